@@ -71,6 +71,7 @@ mod scene_format;
 mod scene_hostile;
 mod scene_in_code;
 mod scene_writer;
+mod score;
 mod stability;
 mod tables;
 mod techniques;

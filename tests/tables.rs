@@ -41,6 +41,7 @@ fn names_are_in_the_help() {
         ("docs/ci.md", "options", "replay"),
         ("docs/ci.md", "reports", "replay"),
         ("docs/evidence/captures.md", "options", "captures check"),
+        ("docs/evidence/shortcuts.md", "options", "score"),
         ("docs/lower.md", "languages", "lower"),
         ("docs/op.md", "operations", "op"),
     ] {

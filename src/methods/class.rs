@@ -143,7 +143,7 @@ pub fn methods() -> &'static [Method] {
 pub fn find(number: u32) -> Option<Place> {
     let table = table();
     let (index, element, word) = (*table.places.get(number as usize / 4)?)?;
-    (number % 4 == 0).then_some(Place {
+    number.is_multiple_of(4).then_some(Place {
         method: &table.methods[usize::from(index)],
         element: element.into(),
         word: word.into(),

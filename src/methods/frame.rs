@@ -6,8 +6,9 @@ use std::sync::Arc;
 use ninebit::plan::{Plan, PlanError, PlanOptions};
 use ninebit::raster::depth;
 use ninebit::state::{
-    CompareFunction, DepthBuffer, DepthTest, Draw, Named, Palette, Profile, Rectangle, Scene, ShaderOperation, StencilOperation,
-    StencilTest, Target, TEXTURE_UNITS, Texture, TextureFormat, TextureImage, TextureKind, TextureUnit, Topology, Vertex, VertexColor, VertexDepths,
+    CompareFunction, DepthBuffer, DepthTest, Draw, Named, Palette, Profile, Rectangle, Scene, ShaderOperation,
+    StencilOperation, StencilTest, TEXTURE_UNITS, Target, Texture, TextureFormat, TextureImage, TextureKind,
+    TextureUnit, Topology, Vertex, VertexColor, VertexDepths,
 };
 
 use crate::class;
@@ -116,12 +117,20 @@ impl Builder {
             Some(())
         });
         // A clear that became the target's own is no draw.
-        let draw = stated.and_then(|()| self.draws.last_mut().filter(|draw| draw.name.is_empty()).map(|draw| draw.name.clone_from(&name)));
+        let draw = stated.and_then(|()| {
+            self.draws.last_mut().filter(|draw| draw.name.is_empty()).map(|draw| draw.name.clone_from(&name))
+        });
         let draw = draw.map(|()| self.draws.len() - 1);
         self.drawn.push(Drawn { line, number: None, draw, name, gaps: view.finish() });
     }
 
-    fn clear_target(&mut self, view: &mut View<'_>, (target, surface): (usize, &Surface), word: u32, (clears_depth, clears_stencil): (bool, bool)) {
+    fn clear_target(
+        &mut self,
+        view: &mut View<'_>,
+        (target, surface): (usize, &Surface),
+        word: u32,
+        (clears_depth, clears_stencil): (bool, bool),
+    ) {
         // R, G, B, A.
         let mask = [4, 5, 6, 7].map(|bit| word >> bit & 1 != 0);
         let mut axis = |method, start: u32, length: u32| {
@@ -225,7 +234,13 @@ impl Builder {
     /// Takes a draw that the end of the log cuts off, and does not state it.
     pub(crate) fn unfinished(&mut self, batch: &Batch, number: u64) {
         let name = format!("draw {number} at line {}", batch.line);
-        self.drawn.push(Drawn { line: batch.line, number: Some(number), draw: None, name, gaps: vec![Gap::Unfinished] });
+        self.drawn.push(Drawn {
+            line: batch.line,
+            number: Some(number),
+            draw: None,
+            name,
+            gaps: vec![Gap::Unfinished],
+        });
     }
 
     fn lower(&mut self, view: &mut View<'_>, memory: &Memory, batch: &Batch) -> Option<Draw> {
@@ -242,7 +257,8 @@ impl Builder {
         let tests = draw.depth_test.is_some() || draw.stencil_test.is_some();
         draw.target = self.target(view, &surface, tests)?;
         self.contents(view, draw.target);
-        let whole = self.targets[draw.target].width == surface.clip.width && self.targets[draw.target].height == surface.clip.height;
+        let whole = self.targets[draw.target].width == surface.clip.width
+            && self.targets[draw.target].height == surface.clip.height;
         draw.scissor = (!whole).then_some(surface.clip);
         draw.combiners = shader::combiners(view)?;
         self.units(view, memory, &mut draw);
@@ -252,8 +268,12 @@ impl Builder {
     /// Returns the target of a surface, which grows with its clip.
     fn target(&mut self, view: &mut View<'_>, surface: &Surface, uses_depth: bool) -> Option<usize> {
         let [width, height] = surface.size();
-        let same = |known: &Known| known.surface.color == surface.color && known.surface.format.bytes() == surface.format.bytes();
-        let shares = |known: &Known| known.uses_depth && known.surface.zeta == surface.zeta && known.surface.color != surface.color;
+        let same = |known: &Known| {
+            known.surface.color == surface.color && known.surface.format.bytes() == surface.format.bytes()
+        };
+        let shares = |known: &Known| {
+            known.uses_depth && known.surface.zeta == surface.zeta && known.surface.color != surface.color
+        };
         if uses_depth && self.known.iter().any(shares) {
             view.note(Gap::NotModelled(format!("a depth buffer (0x{:08x}) that several surfaces have", surface.zeta)));
         }
@@ -265,7 +285,13 @@ impl Builder {
                     clear_color: [0, 0, 0, 0],
                     ..Target::new(width, height, surface.format)
                 });
-                self.known.push(Known { surface: *surface, uses_depth: false, uses: 0, has_contents: self.surfaces_in_memory, is_cleared: false });
+                self.known.push(Known {
+                    surface: *surface,
+                    uses_depth: false,
+                    uses: 0,
+                    has_contents: self.surfaces_in_memory,
+                    is_cleared: false,
+                });
                 self.known.len() - 1
             }
         };
@@ -291,7 +317,8 @@ impl Builder {
         for index in 0..TEXTURE_UNITS {
             let mut stage = shader::stage(view, index);
             if stage.operation.samples() {
-                let enabled = view.get(crate::draw::texture::of_unit(class::SET_TEXTURE_CONTROL0, index)) >> 30 & 1 != 0;
+                let enabled =
+                    view.get(crate::draw::texture::of_unit(class::SET_TEXTURE_CONTROL0, index)) >> 30 & 1 != 0;
                 draw.textures[index] = if enabled { self.unit(view, memory, index, draw.target) } else { None };
                 if draw.textures[index].is_none() {
                     stage.operation = ShaderOperation::None;
@@ -343,7 +370,10 @@ impl Builder {
     /// Returns the texture that shows a target of the frame, if the image is one.
     fn shown(&mut self, view: &mut View<'_>, image: &Image, drawing: usize) -> Option<usize> {
         let color = self.known.iter().position(|known| known.surface.color == image.address && known.uses > 0);
-        let depth = self.known.iter().position(|known| known.uses_depth && known.surface.zeta == image.address && known.uses > 0);
+        let depth = self
+            .known
+            .iter()
+            .position(|known| known.uses_depth && known.surface.zeta == image.address && known.uses > 0);
         let (target, is_depth) = match (color, depth) {
             _ if image.format.depth().is_some() => (depth?, true),
             (Some(color), _) => (color, false),
@@ -387,7 +417,12 @@ impl Builder {
         };
         let name = format!("texture {} at {:08x}", self.textures.len(), image.address);
         let name = if gap.is_some() { format!("{name}, not recorded") } else { name };
-        self.textures.push(Texture { name, kind: image.kind, format: image.format, image: TextureImage::Texels(texels) });
+        self.textures.push(Texture {
+            name,
+            kind: image.kind,
+            format: image.format,
+            image: TextureImage::Texels(texels),
+        });
         gap.iter().for_each(|gap| view.note(gap.clone()));
         self.images.insert(*image, (self.textures.len() - 1, gap));
         self.textures.len() - 1
@@ -463,5 +498,11 @@ fn rectangle(area: Rectangle, color: [u8; 4]) -> Draw {
         ..Vertex::default()
     };
     let corners = [(left, top), (right, top), (right, bottom), (left, bottom)].map(corner);
-    Draw { name: String::new(), topology: Topology::Quads, indices: Arc::new([0, 1, 2, 3]), vertices: corners.into_iter().collect(), ..Draw::default() }
+    Draw {
+        name: String::new(),
+        topology: Topology::Quads,
+        indices: Arc::new([0, 1, 2, 3]),
+        vertices: corners.into_iter().collect(),
+        ..Draw::default()
+    }
 }

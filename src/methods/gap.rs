@@ -53,14 +53,18 @@ impl fmt::Display for Gap {
             Gap::Unset(first, last) => {
                 write!(f, "{} to {} were never set in this log", class::label(*first), class::label(*last))
             }
-            Gap::UnsetProgram(what, first, last) if first == last => write!(f, "{what} {first} was never set in this log"),
+            Gap::UnsetProgram(what, first, last) if first == last => {
+                write!(f, "{what} {first} was never set in this log")
+            }
             Gap::UnsetProgram(what, first, last) => write!(f, "{what}s {first} to {last} were never set in this log"),
             Gap::Dropped(class::ARRAY_ELEMENT16 | class::ARRAY_ELEMENT32, count) => {
                 write!(f, "{count} words of indices were not recorded")
             }
             Gap::Dropped(method, count) => write!(f, "{count} words of {} were not recorded", class::label(*method)),
             Gap::NoMemory(what, address) => write!(f, "{what} at 0x{address:08x}: no memory was given"),
-            Gap::OutsideMemory(what, address) => write!(f, "{what} at 0x{address:08x}: outside of the memory that was given"),
+            Gap::OutsideMemory(what, address) => {
+                write!(f, "{what} at 0x{address:08x}: outside of the memory that was given")
+            }
             Gap::UnknownContents(address) => {
                 write!(f, "the surface at 0x{address:08x} held something before this log, which black stands for")
             }

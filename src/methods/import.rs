@@ -82,7 +82,9 @@ impl Summary {
     pub fn words(&self, treatment: Option<Treatment>) -> u64 {
         let of_class = self.methods.iter().filter(|((class, _), _)| *class == KELVIN);
         let treated = of_class.filter(|((_, method), _)| {
-            treatment.is_none_or(|treatment| class::find(*method).map_or(Treatment::Open, |place| place.method.treatment) == treatment)
+            treatment.is_none_or(|treatment| {
+                class::find(*method).map_or(Treatment::Open, |place| place.method.treatment) == treatment
+            })
         });
         treated.map(|(_, used)| used.count).sum()
     }
@@ -141,7 +143,9 @@ impl<'a> Importer<'a> {
                 }
                 self.draw += 1;
             }
-            Some(Action::Clear(word)) if matches!(self.options.part, Part::All) || self.options.part == Part::Frame(self.frame) => {
+            Some(Action::Clear(word))
+                if matches!(self.options.part, Part::All) || self.options.part == Part::Frame(self.frame) =>
+            {
                 self.builder.clear(&self.state, *line, word);
             }
             Some(Action::Flip) => {

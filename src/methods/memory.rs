@@ -65,17 +65,27 @@ pub enum Layout {
 
 /// Returns the words of an image row after row, each texel or part of a block as [`Texels::words`](ninebit::state::Texels::words) has it; `None` if
 /// memory does not hold it whole. `size` has columns, rows and layers.
-pub fn words(memory: &Memory, address: u64, format: TextureFormat, [width, height, depth]: [u32; 3], layout: Layout) -> Option<Vec<u32>> {
+pub fn words(
+    memory: &Memory,
+    address: u64,
+    format: TextureFormat,
+    [width, height, depth]: [u32; 3],
+    layout: Layout,
+) -> Option<Vec<u32>> {
     let bytes = u64::from(format.bytes());
     if format.is_compressed() {
         let blocks = u64::from(width.div_ceil(4)) * u64::from(height.div_ceil(4)) * u64::from(depth);
         let bytes = memory.slice(address, blocks * bytes)?;
-        return Some(bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect());
+        return Some(
+            bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect(),
+        );
     }
     let texels = u64::from(width) * u64::from(height) * u64::from(depth);
     let extent = match layout {
         Layout::Swizzled => texels * bytes,
-        Layout::Pitch(pitch) => (u64::from(height) * u64::from(depth)).checked_sub(1)? * u64::from(pitch) + u64::from(width) * bytes,
+        Layout::Pitch(pitch) => {
+            (u64::from(height) * u64::from(depth)).checked_sub(1)? * u64::from(pitch) + u64::from(width) * bytes
+        }
     };
     let image = memory.slice(address, extent)?;
     let logarithms = [width, height, depth].map(u32::ilog2);
@@ -87,7 +97,9 @@ pub fn words(memory: &Memory, address: u64, format: TextureFormat, [width, heigh
                     Layout::Swizzled => swizzled([x, y, z], logarithms) * bytes,
                     Layout::Pitch(pitch) => u64::from(z * height + y) * u64::from(pitch) + u64::from(x) * bytes,
                 } as usize;
-                words.push(image[at..at + bytes as usize].iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte)));
+                words.push(
+                    image[at..at + bytes as usize].iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte)),
+                );
             }
         }
     }
@@ -135,7 +147,8 @@ mod tests {
         assert_eq!([[1, 0, 0], [0, 1, 0], [0, 0, 1], [2, 0, 0]].map(|at| swizzled(at, [2, 2, 2])), [1, 2, 4, 8]);
         for logarithms in [[3, 0, 0], [0, 3, 0], [2, 4, 0], [3, 1, 2], [1, 1, 1]] {
             let [w, h, d] = logarithms.map(|n: u32| 1_u32 << n);
-            let mut places: Vec<u64> = (0..w * h * d).map(|n| swizzled([n % w, n / w % h, n / w / h], logarithms)).collect();
+            let mut places: Vec<u64> =
+                (0..w * h * d).map(|n| swizzled([n % w, n / w % h, n / w / h], logarithms)).collect();
             places.sort_unstable();
             assert!(places.iter().copied().eq(0..u64::from(w * h * d)), "{logarithms:?}");
         }

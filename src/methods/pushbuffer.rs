@@ -42,7 +42,9 @@ pub fn follow(memory: &Memory, first: u64, end: u64, each: &mut dyn FnMut(Entry)
             continue;
         }
         match header(word) {
-            Header::Command { method, subchannel, count, increasing } => words.begin(method, subchannel, count, increasing),
+            Header::Command { method, subchannel, count, increasing } => {
+                words.begin(method, subchannel, count, increasing)
+            }
             Header::Jump(target) => at = target.into(),
             Header::Call(target) => {
                 if calls.len() >= MOST_CALLS {

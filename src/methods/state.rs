@@ -424,7 +424,13 @@ mod tests {
         writes.extend((0..8).map(word));
         // Beyond the last slot there is nothing.
         writes.extend((0..4).map(word));
-        writes.extend([(class::SET_TRANSFORM_CONSTANT_LOAD, 0x74), (0xb80, 0x3f80_0000), (0xb84, 0), (0xb88, 0), (0xb8c, 0)]);
+        writes.extend([
+            (class::SET_TRANSFORM_CONSTANT_LOAD, 0x74),
+            (0xb80, 0x3f80_0000),
+            (0xb84, 0),
+            (0xb88, 0),
+            (0xb8c, 0),
+        ]);
         writes.extend([(class::SET_VIEWPORT_OFFSET, 0x3f00_0000), (class::SET_VIEWPORT_OFFSET + 4, 0)]);
         follow(&mut state, &writes);
         assert_eq!([0, 1, 2, 3].map(|n| state.program(135, n)), [4, 5, 6, 7].map(Some));

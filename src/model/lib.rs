@@ -20,6 +20,7 @@ pub mod plan;
 pub mod random;
 pub mod raster;
 pub mod rop;
+pub mod shortcut;
 pub mod shown;
 pub mod state;
 pub mod texture;

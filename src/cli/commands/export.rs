@@ -54,7 +54,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     write_below(&folder.path().join(&name), &bytes)?;
     write_below(&folder.path().join("memory.bin"), &methods.memory)?;
     folder.commit()?;
-    let mut text = format!("{name}: {} words\nmemory.bin: {} bytes; surfaces at\n", methods.writes.len(), methods.memory.len());
+    let mut text =
+        format!("{name}: {} words\nmemory.bin: {} bytes; surfaces at\n", methods.writes.len(), methods.memory.len());
     for (target, address) in scene.targets.iter().zip(&methods.surfaces) {
         text.push_str(&format!("  {address:08x}  {}\n", shown::name(&target.name)));
     }

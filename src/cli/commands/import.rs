@@ -4,6 +4,8 @@ use super::*;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+use ninebit::limits::{LOG, MEMORY_IMAGE};
+use ninebit::plan::PlanOptions;
 use ninebit_files::output::write_below;
 use ninebit_files::pending::{PendingFolder, make_folder};
 use ninebit_files::read::{self, Kind, ReadError};
@@ -16,8 +18,6 @@ use ninebit_methods::pushbuffer::{self, Stop};
 use ninebit_methods::state::State;
 use ninebit_report::explain::{explain, explanation_text};
 use ninebit_scene::write::{self, WriteOptions};
-use ninebit::limits::{LOG, MEMORY_IMAGE};
-use ninebit::plan::PlanOptions;
 
 #[derive(Debug, clap::Args)]
 #[group(id = "result", required = true, multiple = true, args = ["output", "explain"])]
@@ -73,15 +73,22 @@ fn addresses(text: &str) -> Result<(u64, u64), String> {
 /// Imports a log.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let memory = match &arguments.memory {
-        Some(path) => Memory::new(read::bytes(path, Kind::Regular, MEMORY_IMAGE).map_err(|error| unreadable(path, error))?),
+        Some(path) => {
+            Memory::new(read::bytes(path, Kind::Regular, MEMORY_IMAGE).map_err(|error| unreadable(path, error))?)
+        }
         None => Memory::default(),
     };
     let mut state = State::default();
     for path in [&arguments.state, &arguments.assume].into_iter().flatten() {
         let bytes = read::bytes(path, Kind::Stream, LOG).map_err(|error| unreadable(path, error))?;
         assume(&mut state, &String::from_utf8_lossy(&bytes)).map_err(|error| {
-            let message = format!("`{}`, line {}: `{}` sets no state", shown::path(path), error.line, shown::name(&error.text));
-            Failure::invalid("NB1601", message, "write a method and its word, `SET_COLOR_MASK 0x01010101`, or a line of a log")
+            let message =
+                format!("`{}`, line {}: `{}` sets no state", shown::path(path), error.line, shown::name(&error.text));
+            Failure::invalid(
+                "NB1601",
+                message,
+                "write a method and its word, `SET_COLOR_MASK 0x01010101`, or a line of a log",
+            )
         })?;
     }
     let part = match (arguments.frame, arguments.draw) {
@@ -91,7 +98,12 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     };
     let options = Options { part, surfaces_in_memory: arguments.surfaces_in_memory };
     let folder = arguments.output.as_ref().map(|path| PendingFolder::create(path)).transpose()?;
-    let mut out = Out { folder: folder.as_ref(), explanation: arguments.explain.then(String::new), failure: None, written: Vec::new() };
+    let mut out = Out {
+        folder: folder.as_ref(),
+        explanation: arguments.explain.then(String::new),
+        failure: None,
+        written: Vec::new(),
+    };
     let mut each = |frame: Frame| out.take(&frame);
     let summary = follow(arguments, state, &memory, options, &mut each)?;
     let Out { explanation, failure, written, .. } = out;
@@ -99,7 +111,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         return Err(failure);
     }
     if let (Part::Frame(wanted) | Part::Draw(wanted), true) = (part, written.is_empty() && summary.stated == 0) {
-        let (what, count) = if arguments.frame.is_some() { ("frame", summary.flips + 1) } else { ("draw", summary.draws) };
+        let (what, count) =
+            if arguments.frame.is_some() { ("frame", summary.flips + 1) } else { ("draw", summary.draws) };
         let message = format!("the log has no {what} {wanted} that draws anything");
         return Err(Failure::usage(message, format!("it has {count}, numbered from 0")));
     }
@@ -123,12 +136,22 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
 fn unreadable(path: &Path, error: ReadError) -> Failure {
     let name = shown::path(path);
     match error {
-        ReadError::Missing => Failure { exit: Exit::Missing, ..Failure::invalid("NB1602", format!("there is no file `{name}`"), "check the path") },
+        ReadError::Missing => Failure {
+            exit: Exit::Missing,
+            ..Failure::invalid("NB1602", format!("there is no file `{name}`"), "check the path")
+        },
         ReadError::TooLarge(limit) => Failure {
             exit: Exit::Limit,
-            ..Failure::invalid("NB1603", format!("`{name}` is larger than {limit}"), "cut the log, or record fewer frames")
+            ..Failure::invalid(
+                "NB1603",
+                format!("`{name}` is larger than {limit}"),
+                "cut the log, or record fewer frames",
+            )
         },
-        error => Failure { exit: Exit::Missing, ..Failure::invalid("NB1602", format!("`{name}` cannot be read: {error}"), "name a file that may be read") },
+        error => Failure {
+            exit: Exit::Missing,
+            ..Failure::invalid("NB1602", format!("`{name}` cannot be read: {error}"), "name a file that may be read")
+        },
     }
 }
 
@@ -153,7 +176,9 @@ fn follow(
                     format!("the push buffer does not reach 0x{end:08x}: it goes on around 0x{at:08x}"),
                     "give the addresses GET and PUT of one moment",
                 ),
-                Stop::Calls(at) => (format!("calls without a return at 0x{at:08x}"), "give an address where a command begins"),
+                Stop::Calls(at) => {
+                    (format!("calls without a return at 0x{at:08x}"), "give an address where a command begins")
+                }
             };
             Failure::invalid("NB1604", message, help)
         })?;
@@ -172,7 +197,8 @@ fn follow(
     let summary = importer.finish(Some(&reader));
     if summary.methods.is_empty() && summary.unknown_lines.0 > 0 {
         let (line, text) = summary.unknown_lines.1.clone().unwrap_or_default();
-        let message = format!("`{}` has no method that is known; line {line} is `{}`", shown::path(path), shown::name(&text));
+        let message =
+            format!("`{}` has no method that is known; line {line} is `{}`", shown::path(path), shown::name(&text));
         return Err(Failure::invalid("NB1605", message, "docs/import.md has an example of each form that is read"));
     }
     Ok(summary)
@@ -218,7 +244,10 @@ impl Out<'_> {
         let options = WriteOptions { head, comments, register_words: true, ..WriteOptions::default() };
         let files = write::scene(&frame.scene, &options).map_err(|error| {
             let help = "import one of its draws with `--draw`";
-            Failure { exit: Exit::Limit, ..Failure::invalid("NB1606", format!("frame {}: {error}", frame.number), help) }
+            Failure {
+                exit: Exit::Limit,
+                ..Failure::invalid("NB1606", format!("frame {}: {error}", frame.number), help)
+            }
         })?;
         let mut text = files.text;
         for (name, bytes) in &files.files {
@@ -284,8 +313,15 @@ fn summary_text(summary: &Summary, written: &[(String, bool)]) -> String {
             None if *class_number == KELVIN => ("not modelled", "unknown method".to_owned(), ""),
             None => ("of other classes", format!("class 0x{class_number:x}"), ""),
         };
-        let note = if note.is_empty() || place.is_some_and(|place| place.method.treatment == Treatment::State) { String::new() } else { format!("  ({note})") };
-        classes.entry(kind).or_default().push(format!("  0x{method:04x}  {name:<40}{:>9} from line {}{note}", used.count, used.line));
+        let note = if note.is_empty() || place.is_some_and(|place| place.method.treatment == Treatment::State) {
+            String::new()
+        } else {
+            format!("  ({note})")
+        };
+        classes
+            .entry(kind)
+            .or_default()
+            .push(format!("  0x{method:04x}  {name:<40}{:>9} from line {}{note}", used.count, used.line));
     }
     for (kind, lines) in classes {
         let _ = writeln!(out, "\nmethods {kind}: {}", lines.len());
@@ -306,7 +342,10 @@ fn warn(summary: &Summary, context: Context) {
     if let (count, Some((line, text))) = &summary.unknown_lines
         && *count > 0
     {
-        say(format!("{count} lines of no known form were left out; the first, line {line}, is `{text}`"), "docs/import.md lists the forms");
+        say(
+            format!("{count} lines of no known form were left out; the first, line {line}, is `{text}`"),
+            "docs/import.md lists the forms",
+        );
     }
     if let Some((at, fault)) = summary.faults.first() {
         let what = match fault {
@@ -314,7 +353,14 @@ fn warn(summary: &Summary, context: Context) {
             Fault::Branch(word) => format!("0x{word:08x} leads elsewhere, which needs the memory"),
             Fault::End(left) => format!("the words end, and {left} are missing"),
         };
-        let place = if summary.unknown_lines.1.is_none() && summary.methods.is_empty() { String::new() } else { format!(" at {at}") };
-        say(format!("{} words of the push buffer make no sense; the first{place}: {what}", summary.fault_count), "`--push-buffer` follows words in memory");
+        let place = if summary.unknown_lines.1.is_none() && summary.methods.is_empty() {
+            String::new()
+        } else {
+            format!(" at {at}")
+        };
+        say(
+            format!("{} words of the push buffer make no sense; the first{place}: {what}", summary.fault_count),
+            "`--push-buffer` follows words in memory",
+        );
     }
 }

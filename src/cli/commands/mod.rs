@@ -29,6 +29,7 @@ mod render;
 mod replay;
 mod rule;
 mod scene;
+mod score;
 mod signals;
 mod terminal;
 mod texture;
@@ -138,6 +139,13 @@ enum Command {
     /// Frames of a real NV2A, drawn again and compared with the captures
     #[command(subcommand)]
     Captures(captures::Command),
+    /// Score pictures of another renderer, and name the rules that explain what differs
+    ///
+    /// Each frame is exact, off by one, or wrong. Wrong frames are drawn again with known shortcuts of other renderers; a pixel is explained where the rules
+    /// yield the chip's bytes, and the shortcuts the other renderer's. Text that the programs printed is not compared, nor is alpha.
+    ///
+    /// Exit status 0: whatever differs, unless `--at-least` asks for more; 1: fewer frames are exact than that; 3: there are no pictures.
+    Score(score::Arguments),
     /// Replay scenes: draw each and compare it with the expectation beside it
     ///
     /// Exit status: that of the worst scene, the highest number. 0: all are as expected; 1: one differs; 3: one is invalid; 4: something is
@@ -201,6 +209,7 @@ pub(crate) fn run(arguments: &[OsString]) -> Exit {
         Command::Texture(arguments) => texture::run(&arguments, context),
         Command::Vectors(command) => vectors::run(&command),
         Command::Captures(command) => captures::run(&command),
+        Command::Score(arguments) => score::run(&arguments, context),
         Command::Replay(arguments) => replay::run(&arguments, context),
         Command::Rule(arguments) => rule::run(&arguments),
         Command::Policies => policies::run(),

@@ -171,7 +171,9 @@ fn fog(view: &mut View<'_>) -> Fog {
 
 fn window_clip(view: &mut View<'_>) -> Option<WindowClip> {
     let words: Vec<[Option<u32>; 2]> = (0..8)
-        .map(|n| [class::SET_WINDOW_CLIP_HORIZONTAL, class::SET_WINDOW_CLIP_VERTICAL].map(|first| view.known(first + 4 * n)))
+        .map(|n| {
+            [class::SET_WINDOW_CLIP_HORIZONTAL, class::SET_WINDOW_CLIP_VERTICAL].map(|first| view.known(first + 4 * n))
+        })
         .collect();
     let exclusive = view.get_or(class::SET_WINDOW_CLIP_TYPE, 0) & 1 != 0;
     // A program that never sets the rectangles has the driver's, which take in everything.
@@ -182,14 +184,17 @@ fn window_clip(view: &mut View<'_>) -> Option<WindowClip> {
         let (least, most) = (word & 0xfff, word >> 16 & 0xfff);
         (least, (most + 1).saturating_sub(least))
     };
-    let rectangles = words.into_iter().filter_map(|[horizontal, vertical]| Some((horizontal?, vertical?))).map(|(horizontal, vertical)| {
-        let ((x, width), (y, height)) = (range(horizontal), range(vertical));
-        Rectangle { x, y, width, height }
-    });
+    let rectangles = words.into_iter().filter_map(|[horizontal, vertical]| Some((horizontal?, vertical?))).map(
+        |(horizontal, vertical)| {
+            let ((x, width), (y, height)) = (range(horizontal), range(vertical));
+            Rectangle { x, y, width, height }
+        },
+    );
     let mut rectangles: Vec<Rectangle> = rectangles.collect();
     rectangles.dedup();
     let everything = Rectangle { x: 0, y: 0, width: 4096, height: 4096 };
-    (!rectangles.is_empty() && (exclusive || !rectangles.contains(&everything))).then_some(WindowClip { rectangles, exclusive })
+    (!rectangles.is_empty() && (exclusive || !rectangles.contains(&everything)))
+        .then_some(WindowClip { rectangles, exclusive })
 }
 
 fn operations(view: &mut View<'_>, draw: &mut Draw) {
@@ -201,7 +206,8 @@ fn operations(view: &mut View<'_>, draw: &mut Draw) {
         let factors = with_values(BlendFactor::ALL, raster::blend_factor);
         let source = choose(view, class::SET_BLEND_FUNC_SFACTOR, &factors);
         let destination = choose(view, class::SET_BLEND_FUNC_DFACTOR, &factors);
-        let equation = choose(view, class::SET_BLEND_EQUATION, &with_values(BlendEquation::ALL, raster::blend_equation));
+        let equation =
+            choose(view, class::SET_BLEND_EQUATION, &with_values(BlendEquation::ALL, raster::blend_equation));
         draw.blend = Some(Blend { equation, source, destination });
         let constant = |factor| {
             use BlendFactor::{ConstantAlpha, ConstantColor, OneMinusConstantAlpha, OneMinusConstantColor};

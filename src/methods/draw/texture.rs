@@ -226,7 +226,9 @@ impl Image {
                 let step = self.face_bytes().next_multiple_of(FACE_BYTES);
                 let mut address = u64::from(self.address) + u64::from(face) * step;
                 for level in 0..self.levels {
-                    all.extend(memory::words(memory, address, self.format, self.level(level), layout).ok_or_else(outside)?);
+                    all.extend(
+                        memory::words(memory, address, self.format, self.level(level), layout).ok_or_else(outside)?,
+                    );
                     address += self.level_bytes(level);
                 }
             }
@@ -304,7 +306,8 @@ pub(crate) fn unit(view: &mut View<'_>, unit: usize, image: &Image, projects: bo
     }
     let anisotropy = 1 << (control >> 4 & 3);
     state.anisotropy = anisotropy;
-    let mode = [None, Some(ColorKeyMode::Alpha), Some(ColorKeyMode::Color), Some(ColorKeyMode::Texel)][(control & 3) as usize];
+    let mode =
+        [None, Some(ColorKeyMode::Alpha), Some(ColorKeyMode::Color), Some(ColorKeyMode::Texel)][(control & 3) as usize];
     if let Some(mode) = mode {
         let color = argb(view.get(class::SET_COLOR_KEY_COLOR + 4 * unit as u32));
         state.color_key = Some(ColorKey { color, mode });

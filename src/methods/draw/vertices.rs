@@ -3,7 +3,10 @@
 
 use std::collections::HashMap;
 
-use ninebit::state::{ClipDepth, DepthFormat, Draw, PolygonMode, Positions, Profile, Vertex, VertexColor, VertexDepths, Vertices, Viewport};
+use ninebit::state::{
+    ClipDepth, DepthFormat, Draw, PolygonMode, Positions, Profile, Vertex, VertexColor, VertexDepths, Vertices,
+    Viewport,
+};
 use ninebit::vertex::fog;
 use ninebit::vertex::point::eighths;
 
@@ -18,7 +21,13 @@ use crate::vertex::microcode::{Constants, Program};
 use crate::vertex::{ATTRIBUTES, Attributes, DEFAULT, Outputs};
 
 /// Fills in the vertices of a draw; returns whether there are any.
-pub(crate) fn vertices_of(view: &mut View<'_>, memory: &Memory, batch: &Batch, depth: DepthFormat, draw: &mut Draw) -> bool {
+pub(crate) fn vertices_of(
+    view: &mut View<'_>,
+    memory: &Memory,
+    batch: &Batch,
+    depth: DepthFormat,
+    draw: &mut Draw,
+) -> bool {
     for (method, count) in &batch.dropped {
         view.note(Gap::Dropped(*method, *count));
     }
@@ -46,7 +55,8 @@ pub(crate) fn vertices_of(view: &mut View<'_>, memory: &Memory, batch: &Batch, d
     let fog = draw.fog;
     let vertex = |(output, position): (&Outputs, [f32; 4])| {
         let finite = |set: [f32; 4]| set.map(|number| if number.is_finite() { number } else { 0.0 });
-        let color = |color: [f32; 4]| VertexColor::Floats(color.map(|c| if c.is_nan() { 0.0 } else { c.clamp(0.0, 1.0) }));
+        let color =
+            |color: [f32; 4]| VertexColor::Floats(color.map(|c| if c.is_nan() { 0.0 } else { c.clamp(0.0, 1.0) }));
         let coordinate = (fog.enabled && fog.function.is_some()).then_some(output.fog);
         let passed = fog.function.map_or(1.0, |function| fog::passed(&function, Profile::Nv2a, output.fog));
         Vertex {
@@ -159,7 +169,12 @@ fn ranges(numbers: impl Iterator<Item = usize>) -> Vec<(u32, u32)> {
 }
 
 /// Returns the attributes of the vertices, and the indices that the primitives have.
-fn given(view: &mut View<'_>, memory: &Memory, batch: &Batch, reads: &[bool; ATTRIBUTES]) -> (Vec<Attributes>, Vec<u32>) {
+fn given(
+    view: &mut View<'_>,
+    memory: &Memory,
+    batch: &Batch,
+    reads: &[bool; ATTRIBUTES],
+) -> (Vec<Attributes>, Vec<u32>) {
     if !batch.immediate.is_empty() {
         current(view, reads);
         return (batch.immediate.clone(), (0..batch.immediate.len() as u32).collect());
@@ -254,7 +269,7 @@ fn inline(view: &mut View<'_>, batch: &Batch, reads: &[bool; ATTRIBUTES]) -> (Ve
         view.note(Gap::NotModelled("inline vertices without an array's format".into()));
         return (Vec::new(), Vec::new());
     }
-    if bytes.len() % size != 0 {
+    if !bytes.len().is_multiple_of(size) {
         view.note(Gap::NotModelled(format!("{} bytes of inline vertices, which have {size} each", bytes.len())));
     }
     let vertices = bytes.chunks_exact(size).map(|vertex| {
@@ -302,4 +317,3 @@ fn place(view: &mut View<'_>, outputs: &[Outputs], depth: DepthFormat) -> (Posit
     view.note(Gap::NotModelled("vertices behind the viewer or far outside, whose triangles are clipped here".into()));
     (Positions::Clip(viewport), outputs.iter().map(|output| clip(output.position)).collect())
 }
-

@@ -54,7 +54,11 @@ impl Placed {
             let colors = pitch(target.width, target.format.bytes()) * target.height;
             let mut image = vec![0; colors as usize];
             if let Some(words) = &target.contents {
-                let layout = if placed.swizzled[index] { Layout::Swizzled } else { Layout::Pitch(pitch(target.width, target.format.bytes())) };
+                let layout = if placed.swizzled[index] {
+                    Layout::Swizzled
+                } else {
+                    Layout::Pitch(pitch(target.width, target.format.bytes()))
+                };
                 let contents = bytes(words, target.format.texture_format(), [target.width, target.height, 1], layout);
                 image[..contents.len()].copy_from_slice(&contents);
             }
@@ -88,7 +92,9 @@ impl Placed {
         let at = self.bytes.len() as u32;
         let end = (u64::from(at) + u64::from(count)).next_multiple_of(ALIGNMENT.into());
         if end > LARGEST_MEMORY {
-            return refuse(format!("its surfaces and textures take more than {LARGEST_MEMORY} bytes, which no console has"));
+            return refuse(format!(
+                "its surfaces and textures take more than {LARGEST_MEMORY} bytes, which no console has"
+            ));
         }
         self.bytes.extend_from_slice(image);
         self.bytes.resize(end as usize, 0);

@@ -18,7 +18,8 @@ pub fn trace(methods: &Methods) -> String {
             (format!("NV097_{}", place.method.name), method - place.method.number)
         });
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "nv2a_pgraph_method 0: 0x{:x} -> 0x{method:04x} {name}[{place}] 0x{word:x}", class::KELVIN);
+        let _ =
+            writeln!(text, "nv2a_pgraph_method 0: 0x{:x} -> 0x{method:04x} {name}[{place}] 0x{word:x}", class::KELVIN);
     }
     text
 }
@@ -54,7 +55,11 @@ pub fn push_buffer(methods: &Methods) -> Vec<u32> {
     let mut rest = &methods.writes[..];
     while let [(first, _), ..] = rest {
         let run = |step: u32| {
-            let follows = rest.iter().enumerate().take(LONGEST).take_while(|(n, (method, _))| *method == first + step * *n as u32);
+            let follows = rest
+                .iter()
+                .enumerate()
+                .take(LONGEST)
+                .take_while(|(n, (method, _))| *method == first + step * *n as u32);
             follows.count()
         };
         let (increasing, same) = (run(4), run(0));

@@ -1,8 +1,8 @@
 //! Words of the rasteriser, of fog and of the raster operations.
 
 use ninebit::state::{
-    Cull, DepthFormat, DepthRange, DepthTest, Draw, Fog, FrontFace, LineRasterization, PolygonStipple, ProvokingVertex, Rectangle,
-    Scene, ShadeModel, StencilTest, SurfaceFormat, Target,
+    Cull, DepthFormat, DepthRange, DepthTest, Draw, Fog, FrontFace, LineRasterization, PolygonStipple, ProvokingVertex,
+    Rectangle, Scene, ShadeModel, StencilTest, SurfaceFormat, Target,
 };
 use ninebit_program::registers::raster;
 
@@ -52,7 +52,8 @@ pub(super) fn clear(words: &mut Words, placed: &Placed, index: usize, target: &T
         parts |= 0xf0;
     }
     if let Some(depth) = target.depth {
-        let word = if depth.format.has_stencil() { depth.clear << 8 | u32::from(depth.clear_stencil) } else { depth.clear };
+        let word =
+            if depth.format.has_stencil() { depth.clear << 8 | u32::from(depth.clear_stencil) } else { depth.clear };
         words.set(class::SET_ZSTENCIL_CLEAR_VALUE, word);
         parts |= if depth.format.has_stencil() { 3 } else { 1 };
     }
@@ -85,7 +86,8 @@ pub(super) fn surface(words: &mut Words, scene: &Scene, placed: &Placed, draw: &
     let whole = Rectangle { x: 0, y: 0, width: target.width, height: target.height };
     let common = |one: Rectangle, other: Rectangle| {
         let axis = |a: u32, b: u32, c: u32, d: u32| (a.max(c), (a + b).min(c.saturating_add(d)));
-        let ((x, right), (y, bottom)) = (axis(one.x, one.width, other.x, other.width), axis(one.y, one.height, other.y, other.height));
+        let ((x, right), (y, bottom)) =
+            (axis(one.x, one.width, other.x, other.width), axis(one.y, one.height, other.y, other.height));
         Rectangle { x, y, width: right.saturating_sub(x), height: bottom.saturating_sub(y) }
     };
     let clip = [target.clip, draw.scissor].into_iter().flatten().fold(whole, common);
@@ -101,7 +103,8 @@ pub(super) fn draw(words: &mut Words, scene: &Scene, draw: &Draw) -> Result<(), 
     let target = &scene.targets[draw.target];
     let w_buffer = draw.depth_test.is_some_and(|test| test.w_buffer);
     let writes_stencil = draw.stencil_test.is_some_and(|test| test.write_mask != 0);
-    let control = u32::from(writes_stencil) | float_bit(target) | u32::from(w_buffer) << 16 | u32::from(draw.perspective) << 20;
+    let control =
+        u32::from(writes_stencil) | float_bit(target) | u32::from(w_buffer) << 16 | u32::from(draw.perspective) << 20;
     words.set(class::SET_CONTROL0, control);
     figures(words, draw);
     fog(words, &draw.fog)?;
@@ -149,7 +152,10 @@ fn figures(words: &mut Words, draw: &Draw) {
     words.set(class::SET_POLY_SMOOTH_ENABLE, 0);
     words.set(class::SET_LINE_WIDTH, draw.lines.width.into());
     // LIN-2: the first bit makes lines rectangles.
-    words.set(class::SET_ANTI_ALIASING_CONTROL, 0xffff_0000 | u32::from(draw.lines.rasterization == LineRasterization::Rectangular));
+    words.set(
+        class::SET_ANTI_ALIASING_CONTROL,
+        0xffff_0000 | u32::from(draw.lines.rasterization == LineRasterization::Rectangular),
+    );
     words.set(class::SET_POINT_SIZE, draw.point_size.into());
     words.set(class::SET_POINT_SMOOTH_ENABLE, draw.point_sprite.into());
     words.set(class::SET_POINT_PARAMS_ENABLE, draw.point_sizes.is_some().into());
@@ -181,7 +187,8 @@ fn fog(words: &mut Words, fog: &Fog) -> Result<(), ExportError> {
 fn window_clip(words: &mut Words, draw: &Draw) -> Result<(), ExportError> {
     // Everything, where there is no clip.
     let everything = [Rectangle { x: 0, y: 0, width: 4096, height: 4096 }];
-    let (rectangles, exclusive) = draw.window_clip.as_ref().map_or((&everything[..], false), |clip| (&clip.rectangles[..], clip.exclusive));
+    let (rectangles, exclusive) =
+        draw.window_clip.as_ref().map_or((&everything[..], false), |clip| (&clip.rectangles[..], clip.exclusive));
     if rectangles.iter().any(|rectangle| rectangle.width == 0 || rectangle.height == 0) {
         return refuse("a window clip rectangle without pixels has no word: leave it out");
     }

@@ -1,10 +1,10 @@
 //! Words of the texture units, the texture shader and the combiners.
 
-use ninebit::state::{
-    ColorKeyMode, Draw, Filter, Profile, Scene, ShaderOperation, ShadowReference, TEXTURE_UNITS, Texture,
-    TextureImage, TextureKind, TextureUnit,
-};
 use ninebit::plan::texture_size;
+use ninebit::state::{
+    ColorKeyMode, Draw, Filter, Profile, Scene, ShaderOperation, ShadowReference, TEXTURE_UNITS, Texture, TextureImage,
+    TextureKind, TextureUnit,
+};
 use ninebit_program::registers::encode;
 
 use super::memory::{Placed, pitch};
@@ -98,11 +98,20 @@ fn control(unit: &TextureUnit) -> u32 {
         ColorKeyMode::Color => 2,
         ColorKeyMode::Texel => 3,
     });
-    1 << 30 | (unit.min_lod as u32 & 0xfff) << 18 | (unit.max_lod as u32 & 0xfff) << 6 | unit.anisotropy.ilog2() << 4 | key
+    1 << 30
+        | (unit.min_lod as u32 & 0xfff) << 18
+        | (unit.max_lod as u32 & 0xfff) << 6
+        | unit.anisotropy.ilog2() << 4
+        | key
 }
 
 /// Sets the words of a unit that samples.
-fn unit(words: &mut Words, scene: &Scene, placed: &Placed, (index, unit): (usize, &TextureUnit)) -> Result<(), ExportError> {
+fn unit(
+    words: &mut Words,
+    scene: &Scene,
+    placed: &Placed,
+    (index, unit): (usize, &TextureUnit),
+) -> Result<(), ExportError> {
     let texture = &scene.textures[unit.texture];
     let mut set = |method, word| words.set(of_unit(method, index), word);
     let linear = texture.kind == TextureKind::Rectangle;

@@ -5,7 +5,7 @@ use ninebit::number::convert;
 use ninebit::raster::assemble::Assembly;
 use ninebit::raster::stroke::Figure;
 use ninebit::state::{
-    DepthFormat, Draw, Positions, PolygonModes, Scene, ShadeModel, Topology, Vertex, VertexColor, VertexDepths,
+    DepthFormat, Draw, PolygonModes, Positions, Scene, ShadeModel, Topology, Vertex, VertexColor, VertexDepths,
 };
 
 use super::state::code;
@@ -39,7 +39,9 @@ pub(super) fn vertices(words: &mut Words, scene: &Scene, draw: &Draw, assembly: 
 /// Sends what clipping has left.
 fn clipped(sender: &mut Sender<'_>, draw: &Draw, assembly: &Assembly) -> Result<(), ExportError> {
     if draw.topology.has_faces() && draw.polygon_modes != PolygonModes::FILL {
-        return refuse("polygons drawn as lines or points after clipping have no words: state their vertices as `Window`");
+        return refuse(
+            "polygons drawn as lines or points after clipping have no words: state their vertices as `Window`",
+        );
     }
     let mut open: Option<Figure> = None;
     for number in 0..assembly.triangles.len() {

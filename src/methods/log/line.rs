@@ -73,7 +73,8 @@ pub fn line(text: &str) -> Line {
 fn without_prefix(text: &str) -> &str {
     let prefix = text.split_once(':').filter(|(prefix, _)| {
         prefix.split_once('@').is_some_and(|(process, time)| {
-            let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
+            let digits =
+                |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
             digits(process) && digits(time)
         })
     });
@@ -177,7 +178,8 @@ fn combiner(rest: &str) -> Option<Line> {
     }
     let (first, words) = rest.split_once("..")?;
     let (first, (_, words)) = (hex(first.trim())?, words.split_once(':')?);
-    let writes = words.split_whitespace().zip(0_u32..).map(|(word, n)| Some(write(first.checked_add(4 * n)?, hex(word)?)));
+    let writes =
+        words.split_whitespace().zip(0_u32..).map(|(word, n)| Some(write(first.checked_add(4 * n)?, hex(word)?)));
     Some(Line::Writes(writes.collect::<Option<_>>()?))
 }
 

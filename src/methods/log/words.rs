@@ -104,7 +104,9 @@ impl Words {
             return put(Event::Write(self.data(word)));
         }
         match header(word) {
-            Header::Command { method, subchannel, count, increasing } => self.begin(method, subchannel, count, increasing),
+            Header::Command { method, subchannel, count, increasing } => {
+                self.begin(method, subchannel, count, increasing)
+            }
             Header::Jump(_) | Header::Call(_) | Header::Return => put(Event::Fault(Fault::Branch(word))),
             Header::Unknown => put(Event::Fault(Fault::Header(word))),
         }

@@ -30,11 +30,21 @@ fn methods() -> Methods {
     let first = Draw {
         name: "first".into(),
         depth_test: Some(DepthTest::new(CompareFunction::Less, true)),
-        blend: Some(Blend { equation: BlendEquation::Add, source: BlendFactor::SourceAlpha, destination: BlendFactor::One }),
+        blend: Some(Blend {
+            equation: BlendEquation::Add,
+            source: BlendFactor::SourceAlpha,
+            destination: BlendFactor::One,
+        }),
         ..Draw::rectangle(12.0, 12.0).texture(0, unit)
     };
     let second = Draw { name: "second".into(), topology: Topology::LineStrip, ..Draw::rectangle(8.0, 15.0) };
-    let scene = Scene { profile: Profile::Nv2a, targets: vec![target], textures: vec![texture], palettes: vec![palette], draws: vec![first, second] };
+    let scene = Scene {
+        profile: Profile::Nv2a,
+        targets: vec![target],
+        textures: vec![texture],
+        palettes: vec![palette],
+        draws: vec![first, second],
+    };
     let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
     export(&scene, &plan).unwrap()
 }

@@ -30,7 +30,8 @@ struct Program {
 impl Program {
     fn send(&mut self, method: u32, word: u32) {
         let label = class::find(method).map_or("?", |place| place.method.name);
-        writeln!(self.log, "4711@17.000001:nv2a_pgraph_method 0: 0x97 -> 0x{method:04x} NV097_{label}[0] 0x{word:x}").unwrap();
+        writeln!(self.log, "4711@17.000001:nv2a_pgraph_method 0: 0x97 -> 0x{method:04x} NV097_{label}[0] 0x{word:x}")
+            .unwrap();
     }
 
     fn send_all(&mut self, words: &[(u32, u32)]) {
@@ -75,7 +76,12 @@ fn textures() -> (Vec<Texture>, Vec<u32>) {
     let texture = |name: &str, kind, format, image| Texture { name: name.into(), kind, format, image };
     let (flat, cube) = (TextureKind::TwoDimensional, TextureKind::Cube);
     let all = vec![
-        texture("levels", flat, TextureFormat::A8R8G8B8, texels(16, 8, 5, words(16 * 8 + 8 * 4 + 4 * 2 + 2 + 1, u32::MAX))),
+        texture(
+            "levels",
+            flat,
+            TextureFormat::A8R8G8B8,
+            texels(16, 8, 5, words(16 * 8 + 8 * 4 + 4 * 2 + 2 + 1, u32::MAX)),
+        ),
         texture("blocks", flat, TextureFormat::Dxt1, texels(16, 16, 1, words(32, u32::MAX))),
         texture("indices", flat, TextureFormat::P8, texels(8, 8, 1, words(64, 0xff))),
         texture("faces", cube, TextureFormat::R5G6B5, texels(4, 4, 1, words(96, 0xffff))),
@@ -118,13 +124,18 @@ fn stated() -> Scene {
         clear_color: [0x20, 0x40, 0x60, 0xff],
         ..Target::new(256, 256, SurfaceFormat::A8R8G8B8)
     };
-    let small = Target { name: "small".into(), clear_color: [0, 0, 0, 255], ..Target::new(32, 32, SurfaceFormat::R5G6B5) };
+    let small =
+        Target { name: "small".into(), clear_color: [0, 0, 0, 255], ..Target::new(32, 32, SurfaceFormat::R5G6B5) };
     let mut first = Draw { name: "first".into(), target: 1, topology: Topology::TriangleFan, ..Draw::default() };
     let corners = [(0.0, 0.0), (32.0, 0.0), (32.0, 32.0), (0.0, 32.0)];
     first.vertices = corners
         .into_iter()
         .zip(0..)
-        .map(|((x, y), n)| Vertex { position: [x, y, 0.0, 1.0], diffuse: VertexColor::Bytes(noise(77 + n).to_le_bytes()), ..Vertex::default() })
+        .map(|((x, y), n)| Vertex {
+            position: [x, y, 0.0, 1.0],
+            diffuse: VertexColor::Bytes(noise(77 + n).to_le_bytes()),
+            ..Vertex::default()
+        })
         .collect();
     first.indices = Arc::new([0, 1, 2, 3]);
     first.combiners = combiners();
@@ -132,7 +143,12 @@ fn stated() -> Scene {
     let mut draws = vec![first];
     for draw in 0..DRAWS {
         let texture = draw % 6;
-        let mut state = Draw { name: format!("draw {draw}"), topology: Topology::TriangleStrip, combiners: combiners(), ..Draw::default() };
+        let mut state = Draw {
+            name: format!("draw {draw}"),
+            topology: Topology::TriangleStrip,
+            combiners: combiners(),
+            ..Draw::default()
+        };
         state.vertices = (0..VERTICES)
             .map(|corner| {
                 let (position, color, coordinates) = vertex(draw, corner);
@@ -151,7 +167,10 @@ fn stated() -> Scene {
             .collect();
         state.indices = Arc::new([0, 1, 2, 3]);
         state.fog = Fog { enabled: true, color: [10, 200, 30], function: Some(FOG) };
-        state.depth_test = Some(DepthTest { vertex_depths: VertexDepths::Steps, ..DepthTest::new(CompareFunction::LessOrEqual, true) });
+        state.depth_test = Some(DepthTest {
+            vertex_depths: VertexDepths::Steps,
+            ..DepthTest::new(CompareFunction::LessOrEqual, true)
+        });
         draws.push(state.texture(0, unit(texture)));
     }
     let palettes = vec![Palette { name: "palette".into(), entries: palette.into() }];
@@ -163,7 +182,8 @@ fn played() -> Program {
     let (textures, palette) = textures();
     let mut program = Program { log: String::new(), memory: vec![0; 0x1000] };
     // Colours of the frame, its depths, and the small surface, which is swizzled.
-    let [frame, depths, small] = [256 * 256 * 4, 256 * 256 * 4, 32 * 32 * 2].map(|count| program.put(&vec![0xcd; count]));
+    let [frame, depths, small] =
+        [256 * 256 * 4, 256 * 256 * 4, 32 * 32 * 2].map(|count| program.put(&vec![0xcd; count]));
     let mut places = Vec::new();
     for texture in &textures {
         let TextureImage::Texels(texels) = &texture.image else {
@@ -221,10 +241,30 @@ fn played() -> Program {
     ]);
     let copy = |from: u8, to: u8, mac: Mac, is_last: bool| {
         let constant = Operand::new(Source::Constant);
-        let operands = [Operand::new(Source::Input), Operand::default(), if mac == Mac::Add { constant } else { Operand::default() }];
-        encode(&Instruction { mac, operands, input: from, constant: 96, output_mask: 15, output_address: to, is_last, ..Instruction::default() })
+        let operands = [
+            Operand::new(Source::Input),
+            Operand::default(),
+            if mac == Mac::Add { constant } else { Operand::default() },
+        ];
+        encode(&Instruction {
+            mac,
+            operands,
+            input: from,
+            constant: 96,
+            output_mask: 15,
+            output_address: to,
+            is_last,
+            ..Instruction::default()
+        })
     };
-    let mut fog = Instruction { mac: Mac::Add, input: 0, constant: 96, output_mask: 1, output_address: 5, ..Instruction::default() };
+    let mut fog = Instruction {
+        mac: Mac::Add,
+        input: 0,
+        constant: 96,
+        output_mask: 1,
+        output_address: 5,
+        ..Instruction::default()
+    };
     let z = |source| Operand { swizzle: [2; 4], ..Operand::new(source) };
     fog.operands = [z(Source::Input), Operand::default(), z(Source::Constant)];
     let slots = [copy(0, 0, Mac::Add, false), copy(3, 3, Mac::Mov, false), encode(&fog), copy(9, 9, Mac::Mov, true)];
@@ -323,7 +363,9 @@ fn played() -> Program {
         match draw % 3 {
             0 => program.send(class::DRAW_ARRAYS, first | 3 << 24),
             1 => (0..4).for_each(|n| program.send(class::ARRAY_ELEMENT32, first + n)),
-            _ => (0..2).for_each(|n| program.send(class::ARRAY_ELEMENT16, first + 2 * n | (first + 2 * n + 1) << 16)),
+            _ => {
+                (0..2).for_each(|n| program.send(class::ARRAY_ELEMENT16, (first + 2 * n) | ((first + 2 * n + 1) << 16)))
+            }
         }
         program.send(class::SET_BEGIN_END, 0);
     }
@@ -336,7 +378,12 @@ fn a_program_s_frame_is_the_stated_one() {
     let program = played();
     let memory = Memory::new(program.memory);
     let (frames, summary) = import(program.log.as_bytes(), State::default(), &memory, Options::default());
-    assert_eq!((frames.len(), summary.draws, summary.complete), (1, DRAWS as u64 + 1, DRAWS as u64 + 1), "{:?}", summary.gaps);
+    assert_eq!(
+        (frames.len(), summary.draws, summary.complete),
+        (1, DRAWS as u64 + 1, DRAWS as u64 + 1),
+        "{:?}",
+        summary.gaps
+    );
     let imported = &frames[0].scene;
     let plan = |scene: &Scene| Plan::compile(scene, &PlanOptions::default()).unwrap();
     let options = RenderOptions::default();
@@ -354,12 +401,15 @@ fn what_is_missing_is_said() {
     let (frames, summary) = import(program.log.as_bytes(), State::default(), &Memory::default(), Options::default());
     assert_eq!(summary.complete, 1, "only the first draw needs no memory");
     let text: Vec<String> = frames[0].drawn.iter().flat_map(|drawn| &drawn.gaps).map(ToString::to_string).collect();
-    assert!(text.iter().any(|gap| gap.starts_with("vertex array 0 at 0x") && gap.ends_with("no memory was given")), "{text:?}");
-    // As xemu drops them.
-    let dropped = program.log.replace("NV097_ARRAY_ELEMENT16[0] 0x", "NV097_ARRAY_ELEMENT16 * 1 0x").replace(
-        "nv2a_pgraph_method 0: 0x97 -> 0x1800",
-        "nv2a_pgraph_method_abbrev 0: 0x97 -> 0x1800",
+    assert!(
+        text.iter().any(|gap| gap.starts_with("vertex array 0 at 0x") && gap.ends_with("no memory was given")),
+        "{text:?}"
     );
+    // As xemu drops them.
+    let dropped = program
+        .log
+        .replace("NV097_ARRAY_ELEMENT16[0] 0x", "NV097_ARRAY_ELEMENT16 * 1 0x")
+        .replace("nv2a_pgraph_method 0: 0x97 -> 0x1800", "nv2a_pgraph_method_abbrev 0: 0x97 -> 0x1800");
     let memory = Memory::new(program.memory);
     let options = Options { part: Part::Draw(3), ..Options::default() };
     let (frames, _) = import(dropped.as_bytes(), State::default(), &memory, options);

@@ -26,7 +26,11 @@ fn back(methods: &Methods, text: &str) -> Result<Scene, String> {
     }
     let frame = frames.remove(0);
     if let Some(drawn) = frame.drawn.iter().find(|drawn| !drawn.gaps.is_empty()) {
-        return Err(format!("{}: {}", drawn.name, drawn.gaps.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")));
+        return Err(format!(
+            "{}: {}",
+            drawn.name,
+            drawn.gaps.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
+        ));
     }
     Ok(frame.scene)
 }

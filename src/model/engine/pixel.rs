@@ -321,6 +321,7 @@ impl TriangleContext<'_> {
         let mut depth_passed = true;
         if let Some(test) = draw.depth_test.as_ref().filter(|_| stencil_passed) {
             let word = self.depth_word(sample)?;
+            let word = observer.observe_depth(word, draw.depth_format.largest(), || self.ideal_depth(sample));
             if O::ON {
                 self.report_depth(sample, Some(word), observer);
             }

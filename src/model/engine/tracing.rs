@@ -257,7 +257,17 @@ impl<'a> Tracer<'a> {
     ///
     /// # Errors
     /// An error of `each`, which ends the trace.
-    pub fn run<E>(&self, mut each: impl FnMut(DrawTrace) -> Result<(), E>) -> Result<TraceEnd, E> {
+    pub fn run<E>(&self, each: impl FnMut(DrawTrace) -> Result<(), E>) -> Result<TraceEnd, E> {
+        self.run_with::<Paired, _, _>(Recorder::default, |recorder| recorder.steps, each)
+    }
+
+    /// Does the same as [`run`](Self::run) in a lane, with an observer for each kept fragment that hands its steps over.
+    pub(crate) fn run_with<L: Lane, O: Observer, E>(
+        &self,
+        recorder: impl Fn() -> O,
+        steps: impl Fn(O) -> Vec<Step>,
+        mut each: impl FnMut(DrawTrace) -> Result<(), E>,
+    ) -> Result<TraceEnd, E> {
         let (plan, description) = (self.plan, self.target());
         let mut frames = cleared(plan);
         // Whole frames are needed only if a later draw reads one.
@@ -275,7 +285,7 @@ impl<'a> Tracer<'a> {
                 finished = index;
             }
             let texture_words = TextureWords::new(plan, std::slice::from_ref(planned), &frames.surfaces);
-            let textures = texture_words.images::<Paired>();
+            let textures = texture_words.images::<L>();
             let mut context = TriangleContext::vacant(plan, planned);
             for number in 0..planned.assembly.triangles.len() {
                 if !covered(&mut context, number, self.pixel) {
@@ -287,7 +297,7 @@ impl<'a> Tracer<'a> {
                     pixel.shade(planned, &context, place, &textures, &mut Silent);
                     continue;
                 }
-                let mut recorder = Recorder::default();
+                let mut recorder = recorder();
                 let stored = pixel.shade(planned, &context, place, &textures, &mut recorder);
                 each(DrawTrace {
                     draw: index,
@@ -297,7 +307,7 @@ impl<'a> Tracer<'a> {
                     piece: planned.assembly.clipping.piece(context.number).copied(),
                     stored,
                     shown: surface::show(planned.surface, pixel.word),
-                    steps: recorder.steps,
+                    steps: steps(recorder),
                     program_origin: planned.program_origin.clone(),
                 })?;
             }

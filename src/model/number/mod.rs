@@ -208,6 +208,19 @@ pub trait Lane: Blend + Register<Factor = <Self as Lane>::Mapped, Expanded = <Se
     fn attributed_weight(weight: Self::Weight, _part: Part) -> (Self::Weight, f64) {
         (weight, 0.0)
     }
+    /// Returns the value that later rules start from, if the lane has both an integer and an ideal: with `real` the ideal and the integer
+    /// next to it, otherwise the integer as both.
+    fn settled(self, _real: bool) -> Self {
+        self
+    }
+    /// Like [`settled`](Self::settled), for a factor.
+    fn settled_factor(factor: Self::Mapped, _real: bool) -> Self::Mapped {
+        factor
+    }
+    /// Like [`settled`](Self::settled), for a weight in 256ths.
+    fn settled_weight(weight: Self::Weight, _real: bool) -> Self::Weight {
+        weight
+    }
     /// Returns the integer and, if the lane has one, the ideal, for observers.
     fn observe(self) -> (i64, Option<f64>);
     /// Returns a factor for observers, in halves of a step.
@@ -226,6 +239,8 @@ pub trait Ideal:
     + Factor<Sum = Self, Register = Self>
     + Sum<Register = Self>
 {
+    /// Whether a [`Paired`] lane reads texels where this ideal, and not the definition, finds them.
+    const LEADS: bool = false;
     /// Converts a real number in this lane's unit.
     fn from_real(real: f64) -> Self;
     /// Returns the ideal's real number.

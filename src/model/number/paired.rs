@@ -87,6 +87,7 @@ impl<I: Ideal> Lane for Paired<I> {
     type Mapped = PairedFactor<I>;
     type Full = PairedSum<I>;
     const STEP: Self = Paired { fixed: i32::STEP, ideal: I::STEP };
+    const DECIDES: bool = I::LEADS;
     fn byte(value: u8) -> Self {
         Paired { fixed: i32::byte(value), ideal: I::byte(value) }
     }
@@ -138,6 +139,24 @@ impl<I: Ideal> Lane for Paired<I> {
     }
     fn attributed_weight(weight: Self, part: Part) -> (Self, f64) {
         weight.attributed(part)
+    }
+    fn settled(self, real: bool) -> Self {
+        if real {
+            Paired { fixed: self.ideal.decision(), ..self }
+        } else {
+            Paired { ideal: I::from_real(self.fixed.into()), ..self }
+        }
+    }
+    #[allow(clippy::float_arithmetic, reason = "the ideal half")]
+    fn settled_factor(factor: PairedFactor<I>, real: bool) -> PairedFactor<I> {
+        if real {
+            Paired { fixed: Halves((2.0 * factor.ideal.real() + 0.5).floor() as i32), ..factor }
+        } else {
+            Paired { ideal: I::from_real(f64::from(factor.fixed.0) / 2.0), ..factor }
+        }
+    }
+    fn settled_weight(weight: Self, real: bool) -> Self {
+        weight.settled(real)
     }
     fn truncated(self, shift: u32) -> Self {
         Paired { fixed: self.fixed.truncated(shift), ideal: self.ideal.truncated(shift) }

@@ -10,7 +10,7 @@ pub(super) const DEPTH_SCALE: f64 = 65536.0;
 
 /// Implements the lane of a floating-point type.
 macro_rules! real_lane {
-    ($real:ident) => {
+    ($real:ident, $leads:literal) => {
         impl Blend for $real {
             type Weight = $real;
             const WHOLE: $real = 256.0;
@@ -156,6 +156,7 @@ macro_rules! real_lane {
         }
 
         impl Ideal for $real {
+            const LEADS: bool = $leads;
             #[inline(always)]
             fn from_real(real: f64) -> $real {
                 real as $real
@@ -180,5 +181,5 @@ macro_rules! real_lane {
     };
 }
 
-real_lane!(f64);
-real_lane!(f32);
+real_lane!(f64, false);
+real_lane!(f32, true);

@@ -535,6 +535,8 @@ fn plan_shader(draw: &Draw, units: &[PlannedUnit], liveness: &Liveness) -> Optio
         unit: units.iter().position(|unit| unit.index == index),
         live: liveness.units[index],
         dots: liveness.dots[index],
+        lights_alpha: false,
+        signed_luminance: false,
     });
     Some(PlannedShader { stages })
 }

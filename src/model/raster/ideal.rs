@@ -89,7 +89,7 @@ pub fn fog_of_vertex(function: &FogFunction, passed: f32, coordinate: Option<f32
 
 /// Returns 2^x by a series, so that every machine computes the same bits. x is limited to -64..=16. The relative error
 /// is below 2^-51.
-fn power_of_two(x: f64) -> f64 {
+pub(crate) fn power_of_two(x: f64) -> f64 {
     let x = x.clamp(-64.0, 16.0);
     let whole = (x + 0.5).floor();
     let t = (x - whole) * std::f64::consts::LN_2;

@@ -5,7 +5,7 @@ use super::dependent::{Dependent, Moved, QuadTargets, Target};
 use super::filter::nearest;
 use super::planned::{Image, PlannedUnit};
 use super::real::{self, RealColor, RealTarget};
-use super::stage::{Color, Dot, PlannedShader, ShaderSetup, StageSetup};
+use super::stage::{Color, Dot, PlannedShader, PlannedShaderStage, ShaderSetup, StageSetup};
 use super::{dot, shader, shader_report as report, unit};
 use crate::number::{Lane, convert};
 use crate::raster::fog::factor;
@@ -408,17 +408,18 @@ impl<L: Lane> Chain<'_, L> {
         index: usize,
         color: [L; 4],
         luminance: [f32; 2],
-        state: &State<L>,
+        results: &State<L>,
         observer: &mut O,
     ) -> [L; 4] {
-        let live = self.shader.stages[index].live;
-        let previous = self.color::<O>(self.shader.stages[index].state.previous, state);
+        let PlannedShaderStage { live, lights_alpha, signed_luminance, state, .. } = self.shader.stages[index];
+        let previous = self.color::<O>(state.previous, results);
         let red = if L::DECIDES { previous.real.bytes[0] } else { f64::from(previous.bytes[0]) };
+        let red = if signed_luminance { real::signed_luminance(red) } else { red };
         if O::ON && live & 7 != 0 {
             report::luminance_state(index, luminance, observer);
         }
         std::array::from_fn(|n| {
-            if n == 3 || live >> n & 1 == 0 {
+            if n == 3 && !lights_alpha || live >> n & 1 == 0 {
                 return color[n];
             }
             let v = shader::luminance(color[n].decision(), previous.bytes[0], luminance);

@@ -56,6 +56,24 @@ pub fn decode(format: TextureFormat, dithered: bool, block: &[u32], x: u32, y: u
     }
 }
 
+/// Returns the bytes of [`decode`] with every mixture made at eight bits and without dither, rounded to nearest or `cut`: as renderers do that do
+/// not know TEX-3.
+pub(crate) fn decode_undithered(format: TextureFormat, block: &[u32], (x, y): (u32, u32), cut: bool) -> [u8; 4] {
+    let decoded = decode(format, false, block, x, y);
+    let (colors, indices) = match (format, block) {
+        (TextureFormat::Dxt1, &[colors, indices]) | (_, &[_, _, colors, indices]) => (colors, indices),
+        _ => return decoded.bytes,
+    };
+    let dxt1 = format == TextureFormat::Dxt1;
+    let (index, four_colors) = (indices >> (2 * (4 * (y & 3) + (x & 3))) & 3, !dxt1 || colors & 0xffff > colors >> 16);
+    if index == 3 && !four_colors {
+        return decoded.bytes;
+    }
+    let mix = Mix::from_index(colors, index, four_colors);
+    let [r, g, b] = if cut { mix.cut_at_eight_bits() } else { mix.at_eight_bits() }.map(|channel| channel as u8);
+    [r, g, b, decoded.bytes[3]]
+}
+
 /// Transparent black, for formats without blocks and for the transparent index of DXT1.
 const NOTHING: Decoded = Decoded { bytes: [0; 4], ideal: [(0, 1); 4] };
 
@@ -96,6 +114,12 @@ impl Mix {
         let widened = |v: [i32; 3]| widen(v).map(i32::from);
         let (first, second) = (widened(self.first), widened(self.second));
         [0, 1, 2].map(|n| self.round(first[n], second[n]))
+    }
+
+    /// Widens the two colours to bytes by a division, then mixes them, and cuts each result.
+    fn cut_at_eight_bits(&self) -> [i32; 3] {
+        let byte = |v: [i32; 3], n: usize| 255 * v[n] / MAX_CHANNELS[n];
+        [0, 1, 2].map(|n| (self.a * byte(self.first, n) + self.b * byte(self.second, n)) / (self.a + self.b))
     }
 
     /// TEX-4: mixes at five, six and five bits, then widens (TEX-1).

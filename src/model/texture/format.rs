@@ -96,6 +96,17 @@ fn fields(format: TextureFormat) -> Option<[(u32, u32); 3]> {
     }
 }
 
+/// Returns [`expand`] with channels of 5 and 6 bits widened by zeros, as renderers do that shift in place of replicating.
+pub(crate) fn shifted(format: TextureFormat, word: u32) -> [u8; 4] {
+    let mut bytes = expand(format, word);
+    if let Some(fields) = fields(format) {
+        for (byte, (shift, most)) in bytes.iter_mut().zip(fields) {
+            *byte = ((word >> shift & most) * 256 / (most + 1)) as u8;
+        }
+    }
+    bytes
+}
+
 /// Returns [`expand`] in a lane. The ideal takes 5-bit channels as v/31 and 6-bit ones as v/63. Signed channels
 /// (TEX-18) are their two's complement value, s/128 in the ideal.
 #[inline(always)]

@@ -70,6 +70,12 @@ pub(crate) fn luminance(red: f64, [scale, offset]: [f32; 2]) -> f64 {
     (red / 255.0 * f64::from(scale) + f64::from(offset)).max(0.0)
 }
 
+/// Returns the red that stands for the same factor under [`luminance`] where a renderer takes it as a signed byte over 127, halved and moved to
+/// 0 to 1.
+pub(crate) fn signed_luminance(red: f64) -> f64 {
+    255.0 * if red < 128.0 { red / 254.0 } else { (red - 2.0) / 254.0 }
+}
+
 /// TSH-9: returns a coordinate as a channel in 255ths.
 pub(crate) fn pass_through(coordinate: f64) -> f64 {
     255.0 * coordinate.clamp(0.0, 1.0)

@@ -32,6 +32,10 @@ pub struct PlannedShaderStage {
     pub live: u8,
     /// Whether its dot product is needed for sampling.
     pub dots: bool,
+    /// Whether a luminance multiplies alpha too, which TSH-8 does not.
+    pub lights_alpha: bool,
+    /// Whether the ideal's luminance is a signed byte, in 254ths from its least value, which TSH-8's is not.
+    pub signed_luminance: bool,
 }
 
 impl PlannedShaderStage {

@@ -52,6 +52,10 @@ pub trait Observer {
     fn observe_weight<L: Lane>(&mut self, _rule: Rule, weight: L::Weight) -> L::Weight {
         weight
     }
+    /// Receives the depth that a test compares, of a buffer whose largest is given. Returns the depth to continue with.
+    fn observe_depth(&mut self, word: u32, _largest: u32, _ideal: impl FnOnce() -> f64) -> u32 {
+        word
+    }
     /// Receives a decision. `ideal` returns what the ideal would have decided.
     fn decided(&mut self, _decision: Decision, _outcome: i64, _ideal: impl FnOnce() -> i64) {}
     /// Receives the lookup of a texel, at its place inside the image.

@@ -37,11 +37,12 @@ mod transfers;
 
 use draws::*;
 use images::checker;
-use ninebit::engine::{RenderOptions, Renderer, render};
-use ninebit::frame::Surface;
+use ninebit::engine::{RenderOptions, cleared, render};
+use ninebit::frame::{Frames as Rendered, Surface};
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanError, PlanOptions};
 use ninebit::rop::surface;
+use ninebit::shortcut::{self, Mask, Shortcuts};
 use ninebit::state::*;
 use ninebit_data::{CAPTURED, FRAMES};
 use ninebit_files::picture::hexadecimal;
@@ -320,16 +321,40 @@ impl Frame {
     /// # Errors
     /// Returns the plan's errors if a scene cannot be planned.
     pub fn render(&self, options: &RenderOptions, policies: Policies) -> Result<Vec<[u8; 4]>, Vec<PlanError>> {
-        let plan = |scene: &Scene| compile(scene, policies);
-        let Drawn { scene, view, shown, .. } = self.drawn(options, policies)?;
-        let mut frames = render(&plan(&scene)?, options);
+        self.render_with(options, policies, Shortcuts::NONE, None)
+    }
+
+    /// Draws the frame as a renderer with shortcuts does. Pixels outside of the mask may be left undrawn.
+    ///
+    /// # Errors
+    /// Those of [`render`](Self::render).
+    pub fn render_with(
+        &self,
+        options: &RenderOptions,
+        policies: Policies,
+        shortcuts: Shortcuts,
+        mask: Mask<'_>,
+    ) -> Result<Vec<[u8; 4]>, Vec<PlanError>> {
+        let plan = |scene: &Scene| planned(scene, policies).map(|plan| plan.with_shortcuts(shortcuts));
+        let draw = |plan: &Plan, frames: &mut Rendered, mask: Mask<'_>| {
+            shortcut::render(plan, shortcuts, options, frames, mask);
+        };
+        let Drawn { mut scene, before, view, shown } = (self.make)();
+        for (before, texture) in before.iter().zip(&mut scene.textures) {
+            let plan = plan(before)?;
+            let mut frames = cleared(&plan);
+            draw(&plan, &mut frames, None);
+            put_memory(&frames.surfaces[0], texture);
+        }
+        let main = plan(&scene)?;
+        let mut frames = cleared(&main);
+        draw(&main, &mut frames, mask.filter(|_| view.is_none()));
         let mut words = std::mem::take(&mut frames.surfaces[0].words);
         if let Some(view) = view {
             let view = plan(&view)?;
-            let format = view.targets()[0].format;
-            let (renderer, mut frames) = (Renderer::new(&view, options), ninebit::engine::cleared(&view));
-            frames.surfaces[0].words = seen_as(&words, format);
-            renderer.redraw(&mut frames);
+            let mut frames = cleared(&view);
+            frames.surfaces[0].words = seen_as(&words, view.targets()[0].format);
+            draw(&view, &mut frames, None);
             put_back(&frames.surfaces[0], &mut words);
         }
         if shown == Shown::DepthStencil {
@@ -346,7 +371,7 @@ impl Frame {
     fn drawn(&self, options: &RenderOptions, policies: Policies) -> Result<Drawn, Vec<PlanError>> {
         let mut drawn = (self.make)();
         for (before, texture) in std::mem::take(&mut drawn.before).iter().zip(&mut drawn.scene.textures) {
-            let frames = render(&compile(before, policies)?, options);
+            let frames = render(&planned(before, policies)?, options);
             put_memory(&frames.surfaces[0], texture);
         }
         Ok(drawn)
@@ -362,6 +387,22 @@ impl Frame {
         Ok(view.is_none().then_some(scene))
     }
 
+    /// Returns the scene that draws the frame, or most of it.
+    pub fn main_scene(&self) -> Scene {
+        (self.make)().scene
+    }
+
+    /// Returns the shortcuts that can change the frame.
+    ///
+    /// # Errors
+    /// Those of [`render`](Self::render).
+    pub fn shortcuts(&self) -> Result<Shortcuts, Vec<PlanError>> {
+        let Drawn { scene, before, view, .. } = (self.make)();
+        let scenes = before.into_iter().chain([scene]).chain(view);
+        let concerning = |scene: Scene| planned(&scene, Policies::DEFAULT).map(|plan| shortcut::concerning(&plan));
+        scenes.map(concerning).try_fold(Shortcuts::NONE, |all, some| Ok(all.iter().chain(some?.iter()).collect()))
+    }
+
     /// Returns whether a picture equals the capture outside the programs' text.
     pub fn is(&self, pixels: &[[u8; 4]]) -> bool {
         digest(pixels, &self.text) == self.digest
@@ -374,7 +415,8 @@ impl Frame {
     }
 }
 
-fn compile(scene: &Scene, policies: Policies) -> Result<Plan, Vec<PlanError>> {
+/// Plans a scene of the programs.
+fn planned(scene: &Scene, policies: Policies) -> Result<Plan, Vec<PlanError>> {
     Plan::compile_within(scene, &PlanOptions { policies, ..PlanOptions::default() }, &Limits::default())
 }
 

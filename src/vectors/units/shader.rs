@@ -91,7 +91,14 @@ impl CoordinateStage {
             1 => ShaderOperation::PassThrough,
             _ => ShaderOperation::CullFragment { drops_not_negative: [1, 2, 3, 4].map(|n| inputs[n] != 0) },
         };
-        let idle = PlannedShaderStage { state: ShaderStage::conventional(0, false), unit: None, live: 0, dots: false };
+        let idle = PlannedShaderStage {
+            state: ShaderStage::conventional(0, false),
+            unit: None,
+            live: 0,
+            dots: false,
+            lights_alpha: false,
+            signed_luminance: false,
+        };
         let tested = PlannedShaderStage { state: ShaderStage { operation, ..idle.state }, live: 15, ..idle };
         let shader = &PlannedShader { stages: [tested, idle, idle, idle] };
         let run = with_place([5, 6, 7, 8].map(|n| float(inputs[n])), |at, vertices| {

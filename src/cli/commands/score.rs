@@ -1,0 +1,302 @@
+//! The command `ninebit score`: pictures of another renderer against the chip's, and the rules that explain what differs.
+
+mod badge;
+mod chart;
+mod page;
+
+use super::*;
+
+use std::fmt::Write;
+
+use ninebit::shortcut::Shortcuts;
+use ninebit_files::output::write_below;
+use ninebit_files::pending::PendingFolder;
+use ninebit_handbook::{RULES, Rule};
+use ninebit_scene::image::Rgba;
+use ninebit_score::{Pictures, Run, Subject, captured, find, of_scene};
+
+use crate::replay::EntryKind;
+
+#[derive(Debug, Args)]
+#[command(group(clap::ArgGroup::new("against").required(true).args(["captures", "scenes"])))]
+pub(crate) struct Arguments {
+    /// The folder `results` of the captures: the chip's pictures, SUITE/FRAME.png
+    #[arg(long, value_name = "DIR")]
+    captures: Option<PathBuf>,
+    /// A folder of scenes in place of the captures; what the model draws counts as right
+    #[arg(long, value_name = "DIR")]
+    scenes: Option<PathBuf>,
+    /// A folder of another renderer's pictures, SUITE/FRAME.png at any depth, or beside `--scenes` PATH/SCENE.png; may be given several times: the last folder is explained, those before are its history
+    #[arg(long, value_name = "DIR", required = true)]
+    results: Vec<PathBuf>,
+    /// Score this suite only; may be given several times
+    #[arg(long = "suite", value_name = "SUITE")]
+    suites: Vec<String>,
+    /// Write a report into this folder: `index.html` with pictures, `score.json`, `badge.svg`; an earlier report is replaced
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Look for no causes, which takes a small part of the time
+    #[arg(long)]
+    no_causes: bool,
+    /// Exit with status 1 if less of a hundred frames are exact
+    #[arg(long, value_name = "PERCENT", value_parser = clap::value_parser!(u8).range(0..=100))]
+    at_least: Option<u8>,
+    /// Number of threads; 0 for one per core
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    threads: usize,
+    /// How to print the result
+    #[arg(long, value_enum, value_name = "FORMAT", default_value_t = Format::Text)]
+    format: Format,
+}
+
+/// The file of a report by which an earlier one is recognised.
+const DOCUMENT: &str = "score.json";
+
+/// Most frames with pictures.
+const MOST_EXHIBITS: usize = 40;
+
+/// Causes that the text lists.
+const SHOWN: usize = 12;
+
+/// Runs the command.
+pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
+    let report = arguments.output.as_deref().map(folder).transpose()?;
+    let (subjects, sets) = match (&arguments.captures, &arguments.scenes) {
+        (Some(captures), _) => of_captures(captures, arguments)?,
+        (None, scenes) => of_scenes(scenes.as_deref().unwrap_or(Path::new(".")), arguments)?,
+    };
+    let runs = ninebit::threads::on_threads(arguments.threads, || scored(&subjects, &sets, arguments, context))?;
+    if let (Some(report), Some(last)) = (report, sets.last()) {
+        let write = || write(&report, arguments, &runs, &subjects, last);
+        ninebit::threads::on_threads(arguments.threads, write)?;
+        report.commit()?;
+    }
+    let document = || format!("{:#}", ninebit_score::document(&runs));
+    arguments.format.print(|| text(&runs), document)?;
+    let is_enough = |run: &Run| arguments.at_least.is_none_or(|least| run.total().percent() >= f64::from(least));
+    if runs.last().is_none_or(is_enough) { Ok(()) } else { Err(Failure::difference()) }
+}
+
+/// Scores each folder. Only the last is explained.
+fn scored(
+    subjects: &[Subject],
+    sets: &[Pictures],
+    arguments: &Arguments,
+    context: Context,
+) -> Result<Vec<Run>, Failure> {
+    let progress = Progress::new("scoring", context.color);
+    let (each, all) = (subjects.len() as u64, (subjects.len() * sets.len()) as u64);
+    let one = |(n, set): (usize, &Pictures)| {
+        let explain = n + 1 == sets.len() && !arguments.no_causes;
+        ninebit_score::run(subjects, set, explain, &|done| progress.report(n as u64 * each + done, all))
+    };
+    Ok(sets.iter().enumerate().map(one).collect::<Result<_, _>>()?)
+}
+
+/// Begins the folder of a report.
+fn folder(place: &Path) -> Result<PendingFolder, Failure> {
+    if !place.exists() {
+        return Ok(PendingFolder::create(place)?);
+    }
+    let pending = if place.join(DOCUMENT).is_file() { PendingFolder::replacing(place)? } else { None };
+    pending.ok_or_else(|| {
+        let message = format!("`{}` exists, and is no report", shown::path(place));
+        Failure::usage(message, "name a folder that does not exist, or an earlier report, which is replaced")
+    })
+}
+
+fn unreadable(place: &Path, error: &dyn std::fmt::Display) -> Failure {
+    let message = format!("`{}` cannot be read: {error}", shown::path(place));
+    Failure::invalid("NB0526", message, "name a folder of pictures")
+}
+
+/// Returns the folders of pictures below a place, of which there is at least one.
+fn pictures(place: &Path) -> Result<Vec<Pictures>, Failure> {
+    let found = find(place).map_err(|error| unreadable(place, &error))?;
+    if found.is_empty() {
+        return Err(unreadable(place, &"there is no SUITE/FRAME.png in it"));
+    }
+    Ok(found)
+}
+
+/// Returns the frames of the captures, and the folders of results.
+fn of_captures(captures: &Path, arguments: &Arguments) -> Result<(Vec<Subject>, Vec<Pictures>), Failure> {
+    let chip = pictures(captures)?.swap_remove(0);
+    let is_wanted = |(suite, _): &&(String, String)| arguments.suites.is_empty() || arguments.suites.contains(suite);
+    let files: Vec<(String, String)> = chip.files.iter().filter(is_wanted).cloned().collect();
+    if files.is_empty() {
+        return Err(Failure::usage("the captures have no such suite", "name a folder of the captures"));
+    }
+    let subjects = captured(&chip.folder, &files).map_err(|unmatched| Failure::fault(&unmatched.to_string()))?;
+    let mut sets = Vec::new();
+    for place in &arguments.results {
+        sets.extend(pictures(place)?);
+    }
+    for set in &mut sets {
+        set.files.retain(|file| is_wanted(&file));
+    }
+    Ok((subjects, sets))
+}
+
+/// Returns the scenes of a folder, and the folders of results.
+fn of_scenes(scenes: &Path, arguments: &Arguments) -> Result<(Vec<Subject>, Vec<Pictures>), Failure> {
+    let found = crate::replay::find(&[scenes.to_path_buf()])
+        .map_err(|error| Failure::usage(error.to_string(), "name a folder of scenes"))?;
+    let mut subjects = Vec::new();
+    for entry in found.iter().filter(|entry| entry.kind == EntryKind::Scene) {
+        let loaded = ninebit_scene::load(&entry.path, &Limits::default()).map_err(scene::refused)?;
+        let below = entry.path.strip_prefix(scenes).unwrap_or(&entry.path);
+        let text = |part: Option<&Path>| part.and_then(Path::to_str).unwrap_or_default().to_owned();
+        let (suite, name) = (text(below.parent()), text(below.file_stem().map(Path::new)));
+        if arguments.suites.is_empty() || arguments.suites.contains(&suite) {
+            subjects.extend(of_scene(suite, name, loaded.scene));
+        }
+    }
+    if subjects.is_empty() {
+        return Err(Failure::usage("there is no scene to score", "name a folder of scenes"));
+    }
+    let beside = |place: &PathBuf| ninebit_score::beside_scenes(place).map_err(|error| unreadable(place, &error));
+    Ok((subjects, arguments.results.iter().map(beside).collect::<Result<_, _>>()?))
+}
+
+/// Writes the files of a report.
+fn write(
+    report: &PendingFolder,
+    arguments: &Arguments,
+    runs: &[Run],
+    subjects: &[Subject],
+    last: &Pictures,
+) -> Result<(), Failure> {
+    let Some(run) = runs.last() else { return Ok(()) };
+    let exhibits = ninebit_score::exhibits(run, subjects, last, MOST_EXHIBITS);
+    let evidence = ninebit_score::evidence(run, subjects, &exhibits);
+    for exhibit in &exhibits {
+        for (kind, picture) in &exhibit.pictures {
+            let path = report.path().join("pictures").join(format!("{}-{kind}.png", exhibit.file));
+            write_below(&path, &png(picture)?)?;
+        }
+    }
+    let (against, option) = match arguments.captures {
+        Some(_) => ("captures of the chip", "--captures"),
+        None => ("the model", "--scenes"),
+    };
+    let page = page::page(&page::Report {
+        title: "Scorecard",
+        against,
+        runs,
+        exhibits: &exhibits,
+        evidence: &evidence,
+        command: &format!("ninebit score {option} DIR --results DIR"),
+    });
+    write_below(&report.path().join("index.html"), page.as_bytes())?;
+    let total = run.total();
+    let badge = badge::badge("frames exact", &format!("{} of {}", total.exact, total.frames));
+    write_below(&report.path().join("badge.svg"), badge.as_bytes())?;
+    write_below(&report.path().join(DOCUMENT), format!("{:#}\n", ninebit_score::document(runs)).as_bytes())?;
+    Ok(())
+}
+
+fn png(picture: &Rgba) -> Result<Vec<u8>, Failure> {
+    let pixels: Vec<[u8; 4]> = picture.pixels().iter().map(|[r, g, b, _]| [*r, *g, *b, 255]).collect();
+    Ok(encode_png(picture.width(), picture.height(), &pixels, Compression::Small)?)
+}
+
+/// Returns the result as text.
+fn text(runs: &[Run]) -> String {
+    let mut text = String::new();
+    for run in runs {
+        let total = run.total();
+        let _ = writeln!(
+            text,
+            "{}\n  {} frames: {} exact, {} off by one, {} wrong, {} missing, {} unreadable; {} of {} pixels wrong",
+            run.name,
+            total.frames,
+            total.exact,
+            total.off_by_one,
+            total.wrong,
+            total.missing,
+            total.unreadable,
+            total.pixels.wrong,
+            total.pixels.compared,
+        );
+    }
+    let Some(run) = runs.last() else { return text };
+    let _ = writeln!(text, "\n{:<32}frames   exact  by one   wrong pixels  explained", "suite");
+    for (suite, total) in run.suites() {
+        let (explained, all) = run.explained_of(suite);
+        let share = if all == 0 { "-".to_owned() } else { percent(explained, all) };
+        let (frames, exact, by_one, wrong) = (total.frames, total.exact, total.off_by_one, total.pixels.wrong);
+        let _ = writeln!(text, "{suite:<32}{frames:>6}{exact:>8}{by_one:>8}{wrong:>15}{share:>11}");
+    }
+    let Some(causes) = run.causes.as_ref().filter(|causes| causes.wrong > 0) else { return text };
+    let (explained, wrong) = (causes.explained(), causes.wrong);
+    let _ = writeln!(
+        text,
+        "\n{explained} of {wrong} wrong pixels of drawn frames are explained ({})",
+        percent(explained, wrong)
+    );
+    for cause in causes.causes.iter().take(SHOWN) {
+        let rule = first_rule(cause.variant);
+        let _ = writeln!(text, "{:>12}  {:<8}{:<9} {}", cause.pixels, rule, grade(rule), cause.variant.names());
+    }
+    if causes.causes.len() > SHOWN {
+        let _ = writeln!(text, "and {} more causes", causes.causes.len() - SHOWN);
+    }
+    text
+}
+
+/// Returns the handbook's entry of a rule.
+fn rule(id: &str) -> Option<&'static Rule<'static>> {
+    RULES.iter().find(|rule| rule.id == id)
+}
+
+/// Returns the first grade of a rule.
+fn grade(id: &str) -> &'static str {
+    rule(id).and_then(|rule| rule.grades().first().copied()).unwrap_or_default()
+}
+
+/// Returns the main rule of a variant.
+fn first_rule(variant: Shortcuts) -> &'static str {
+    variant.iter().next().map_or("", |shortcut| shortcut.reading().rules[0])
+}
+
+/// Returns a share in percent with one decimal.
+#[allow(clippy::float_arithmetic, reason = "a share for people")]
+fn percent(part: u64, whole: u64) -> String {
+    format!("{:.1} %", 100.0 * part as f64 / whole.max(1) as f64)
+}
+
+/// Returns a number with commas between thousands.
+fn thousands(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (n, digit) in digits.chars().enumerate() {
+        if n > 0 && (digits.len() - n).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_for_people() {
+        assert_eq!([0, 999, 1000, 1_234_567].map(thousands), ["0", "999", "1,000", "1,234,567"]);
+        assert_eq!((percent(1, 3).as_str(), percent(1, 0).as_str()), ("33.3 %", "100.0 %"));
+    }
+
+    #[test]
+    fn every_shortcut_reads_a_rule_of_the_handbook() {
+        use ninebit::shortcut::Shortcut;
+        use ninebit::state::Named;
+        for shortcut in Shortcut::ALL {
+            for id in shortcut.reading().rules {
+                assert!(rule(id).is_some(), "{} reads {id}", shortcut.name());
+            }
+        }
+    }
+}

@@ -1,0 +1,263 @@
+//! The page of a report.
+
+use maud::{DOCTYPE, Markup, html};
+use ninebit::shortcut::Shortcuts;
+use ninebit::shown;
+use ninebit_score::causes::{Cause, Causes};
+use ninebit_score::{COLORS, Evidence, Exhibit, Run, Total};
+
+use super::{chart, first_rule, grade, percent, thousands};
+use crate::page::{head, source_hash};
+
+const STYLE: &str = include_str!("style.css");
+
+/// Most frames with unexplained pixels that are listed.
+const MOST_LISTED: usize = 100;
+
+/// What a page shows.
+pub(super) struct Report<'a> {
+    /// The title.
+    pub(super) title: &'a str,
+    /// What the pictures are compared with, for a sentence.
+    pub(super) against: &'a str,
+    /// All runs. The last is shown in full.
+    pub(super) runs: &'a [Run],
+    pub(super) exhibits: &'a [Exhibit],
+    pub(super) evidence: &'a [Option<Evidence>],
+    /// The command that made the report, without suites.
+    pub(super) command: &'a str,
+}
+
+/// Returns the page.
+pub(super) fn page(report: &Report<'_>) -> String {
+    let policy = format!(
+        "default-src 'none'; img-src 'self' file:; style-src {}; base-uri 'none'; form-action 'none'",
+        source_hash(STYLE)
+    );
+    let none = Causes::default();
+    let page = report.runs.last().map(|run| {
+        let causes = run.causes.as_ref().unwrap_or(&none);
+        html! {
+            (DOCTYPE)
+            html lang="en" {
+                (head(&policy, report.title, STYLE))
+                body {
+                    header {
+                        h1 { (report.title) }
+                        p { "Pictures of " (shown::name(&run.name)) ", compared with " (report.against) " in R, G and B, pixel by pixel." }
+                        (tiles(run, causes))
+                    }
+                    main {
+                        @if report.runs.len() > 1 { h2 { "History" } (chart::history(report.runs)) }
+                        @if !causes.causes.is_empty() { (table_of_causes(causes)) (cases(report, causes)) }
+                        (table_of_suites(report.runs))
+                        (figures(report, run))
+                        (rest(run, causes))
+                    }
+                }
+            }
+        }
+        .into_string()
+    });
+    page.unwrap_or_default() + "\n"
+}
+
+fn tiles(run: &Run, causes: &Causes) -> Markup {
+    let total = run.total();
+    let one = |value: String, label: &str| html! { li { strong { (value) } (label) } };
+    html! {
+        ul.tiles {
+            (one(format!("{} of {}", thousands(total.exact), thousands(total.frames)), "frames exact"))
+            (one(thousands(total.off_by_one), "more differ by one step at most"))
+            (one(percent(total.pixels.wrong, total.pixels.compared), "of all pixels wrong"))
+            @if causes.wrong > 0 {
+                (one(percent(causes.explained(), causes.wrong), "of the wrong pixels of drawn frames explained"))
+            }
+            @if total.missing > 0 { (one(thousands(total.missing), "frames without a picture")) }
+            @if total.unreadable > 0 { (one(thousands(total.unreadable), "pictures of another size, or not readable")) }
+            @if !run.foreign.is_empty() { (one(thousands(run.foreign.len() as u64), "pictures that no frame has")) }
+        }
+    }
+}
+
+fn color(number: usize) -> String {
+    let [r, g, b] = COLORS[number.min(COLORS.len() - 1)];
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+fn swatch(number: usize) -> Markup {
+    html! { svg.swatch viewBox="0 0 12 12" width="12" height="12" aria-hidden="true" { rect width="12" height="12" rx="2" fill=(color(number)) {} } }
+}
+
+/// Returns what the shortcuts of a variant do, as a sentence's end.
+fn does(variant: Shortcuts) -> String {
+    variant.iter().map(|shortcut| shortcut.reading().does).collect::<Vec<_>>().join("; and ")
+}
+
+fn table_of_causes(causes: &Causes) -> Markup {
+    let most = causes.causes.iter().map(|cause| cause.pixels).max().unwrap_or(1);
+    html! {
+        h2 { "Causes" }
+        p.quiet {
+            "A pixel is explained where the model yields the chip's bytes by its rules and the other renderer's with a shortcut. \
+             Each is counted once, under the fewest shortcuts. The last column is the number that a shortcut would yield if the errors were dealt out at random."
+        }
+        div.scroll { table {
+            tr { th { "the renderer ..." } th { "rule" } th { "grade" } th.n { "pixels" } th {} th.n { "by chance" } }
+            @for (n, cause) in causes.causes.iter().enumerate() {
+                @let id = first_rule(cause.variant);
+                tr {
+                    td { (swatch(n)) a href={ "#cause" (n) } { (does(cause.variant)) } }
+                    td { @for shortcut in cause.variant.iter() { (shortcut.reading().rules[0]) " " } }
+                    td { (grade(id)) }
+                    td.n { (thousands(cause.pixels)) }
+                    td { (chart::bar(cause.pixels, most, "cause")) }
+                    td.n { (thousands(cause.chance.expected as u64)) }
+                }
+            }
+        } }
+    }
+}
+
+fn cases(report: &Report<'_>, causes: &Causes) -> Markup {
+    html! {
+        h2 { "Cause by cause" }
+        @for (n, cause) in causes.causes.iter().enumerate() {
+            details id={ "cause" (n) } open[n == 0] {
+                summary { (swatch(n)) code { (cause.variant.names()) } ": " (thousands(cause.pixels)) " pixels" }
+                (case(report, cause, report.evidence.get(n).and_then(Option::as_ref)))
+            }
+        }
+    }
+}
+
+fn case(report: &Report<'_>, cause: &Cause, evidence: Option<&Evidence>) -> Markup {
+    let rules: Vec<&str> = cause.variant.iter().flat_map(|shortcut| shortcut.reading().rules).copied().collect();
+    html! {
+        @for id in &rules {
+            @if let Some(rule) = super::rule(id) {
+                p { strong { (id) " " (rule.title) } ", " (rule.grades().first().copied().unwrap_or_default()) }
+                pre { (rule.field("Formula")) }
+            }
+        }
+        @if let Some(Evidence { frame, sample, lines }) = evidence {
+            @let suite = frame.rsplit_once('/').map_or("", |(suite, _)| suite);
+            p {
+                "Pixel " (sample.at.0) ", " (sample.at.1) " of " code { (shown::name(frame)) } ": the chip shows "
+                (pixel(sample.truth)) ", the renderer " (pixel(sample.other)) "."
+            }
+            @if !lines.is_empty() {
+                div.scroll { table {
+                    tr { th { "step" } th { "rule" } th.n { "chip" } th.n { "with the shortcut" } th { "how" } }
+                    @for line in lines {
+                        @let part = |side: &Option<(String, String)>| side.clone().unwrap_or_default();
+                        @let (first, second) = (part(&line.first), part(&line.second));
+                        tr {
+                            td { code { (line.name) } } td { (line.rule) } td.n { (first.1) } td.n { (second.1) }
+                            td { code { (if first.0 == second.0 { first.0 } else { format!("{} | {}", first.0, second.0) }) } }
+                        }
+                    }
+                } }
+            }
+            h3 { "For a bug report" }
+            p {
+                "The renderer " (does(cause.variant)) ". The chip does not (" (rules.join(", ")) "): pixel " (sample.at.0) ", " (sample.at.1) " of "
+                (shown::name(frame)) " is " (pixel(sample.truth)) " on it, and " (pixel(sample.other)) " here. "
+                (thousands(cause.pixels)) " pixels of these programs differ for it. The rules:"
+            }
+            pre { @for id in &rules { "ninebit rule " (id) "\n" } (report.command) " --suite " (suite) }
+        }
+    }
+}
+
+fn pixel([r, g, b, _]: [u8; 4]) -> String {
+    format!("({r}, {g}, {b})")
+}
+
+fn table_of_suites(runs: &[Run]) -> Markup {
+    let (Some(run), before) = (runs.last(), runs.len().checked_sub(2).map(|n| runs[n].suites())) else {
+        return html! {};
+    };
+    let has_causes = run.causes.is_some();
+    html! {
+        h2 { "Suites" }
+        div.scroll { table {
+            tr {
+                th { "suite" } th.n { "frames" } th.n { "exact" } th.n { "by one" } th.n { "wrong pixels" } th.n { "of all" }
+                @if has_causes { th.n { "explained" } }
+                @if before.is_some() { th.n { "wrong pixels before" } }
+            }
+            @for (name, total) in run.suites() {
+                @let before = before.as_ref().map(|before| before.get(name).copied().unwrap_or_default());
+                tr.differs[before.is_some_and(|before| jumps(&before, &total))] {
+                    td { (shown::name(name)) }
+                    td.n { (total.frames) } td.n { (total.exact) } td.n { (total.off_by_one) }
+                    td.n { (thousands(total.pixels.wrong)) } td.n { (percent(total.pixels.wrong, total.pixels.compared)) }
+                    @if has_causes {
+                        @let (explained, all) = run.explained_of(name);
+                        td.n { @if all > 0 { (percent(explained, all)) } }
+                    }
+                    @if let Some(before) = before { td.n { (thousands(before.pixels.wrong)) @if jumps(&before, &total) { " (new)" } } }
+                }
+            }
+        } }
+    }
+}
+
+/// Returns whether so many more pixels of a suite are wrong than before that it is news: twice as many, and a hundredth of all.
+fn jumps(before: &Total, now: &Total) -> bool {
+    before.frames > 0 && now.pixels.wrong > 2 * before.pixels.wrong && now.pixels.wrong > now.pixels.compared / 100
+}
+
+fn figures(report: &Report<'_>, run: &Run) -> Markup {
+    html! {
+        @if !report.exhibits.is_empty() {
+            h2 { "Frames" }
+            p.quiet { "The difference is eight times as bright. In the last picture each colour is a cause, white is unexplained." }
+            @for exhibit in report.exhibits {
+                @let frame = &run.frames[exhibit.frame];
+                @let name = format!("{}/{}", frame.suite, frame.name);
+                figure {
+                    figcaption { strong { (shown::name(&name)) } ": " (thousands(frame.counts.wrong)) " pixels wrong" }
+                    div.pictures {
+                        @for (kind, _) in &exhibit.pictures {
+                            a href={ "pictures/" (exhibit.file) "-" (kind) ".png" } {
+                                img src={ "pictures/" (exhibit.file) "-" (kind) ".png" } alt={ (kind) " of " (shown::name(&name)) } loading="lazy" width="640" height="480";
+                                span { (kind) }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Returns the list of frames in which the most pixels are unexplained.
+fn rest(run: &Run, causes: &Causes) -> Markup {
+    let variants = causes.variants();
+    let left = |frame: &ninebit_score::FrameScore| {
+        let explained = frame.explained.as_ref().map_or(0, |explained| explained.covered(&variants).0);
+        frame.counts.wrong - explained
+    };
+    let mut frames: Vec<_> =
+        run.frames.iter().map(|frame| (left(frame), frame)).filter(|(left, _)| *left > 0).collect();
+    frames.sort_by_key(|(left, _)| std::cmp::Reverse(*left));
+    html! {
+        @if run.causes.is_some() && !frames.is_empty() {
+            details {
+                summary { "What is left, by frame: " (frames.len()) " frames" }
+                div.scroll { table {
+                    tr { th { "frame" } th.n { "unexplained pixels" } th {} }
+                    @for (left, frame) in frames.iter().take(MOST_LISTED) {
+                        tr {
+                            td { (shown::name(&format!("{}/{}", frame.suite, frame.name))) } td.n { (thousands(*left)) }
+                            td { @if frame.explained.is_none() { "the model does not draw it" } }
+                        }
+                    }
+                } }
+                @if frames.len() > MOST_LISTED { p { "The document " code { "score.json" } " has all of them." } }
+            }
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! Textures whose texels another renderer has converted to bytes beforehand.
+
+use super::{Shortcut, Shortcuts};
+use crate::plan::Plan;
+use crate::state::{Level, Texels, Texture, TextureFormat, TextureImage, TextureKind};
+use crate::texture::compressed;
+use crate::texture::format;
+
+/// Returns whether a shortcut converts texels of a format.
+pub(super) fn converts(shortcut: Shortcut, format: TextureFormat) -> bool {
+    match shortcut {
+        Shortcut::PlainBlocks => format == TextureFormat::Dxt1,
+        Shortcut::CutBlocks => format.is_compressed(),
+        Shortcut::ShiftedTexels => format::is_narrow(format),
+        _ => false,
+    }
+}
+
+/// Converts the textures that the shortcuts concern to A8R8G8B8.
+pub(super) fn convert(plan: &mut Plan, shortcuts: Shortcuts) {
+    for index in 0..plan.textures.len() {
+        let Texture { format, kind, image, .. } = &plan.textures[index];
+        let Some(shortcut) = shortcuts.iter().find(|shortcut| converts(*shortcut, *format)) else { continue };
+        let TextureImage::Texels(texels) = image else { continue };
+        let Some(words) = converted(texels, *format, *kind, shortcut) else { continue };
+        let image = TextureImage::Texels(Texels { words: words.into(), ..texels.clone() });
+        let texture = &mut plan.textures[index];
+        (texture.format, texture.image) = (TextureFormat::A8R8G8B8, image);
+        let units = plan.draws.iter_mut().flat_map(|draw| &mut draw.units);
+        for unit in units.filter(|unit| unit.state.texture == index) {
+            let TextureImage::Texels(Texels { width, height, levels, border, .. }) = &plan.textures[index].image else {
+                continue;
+            };
+            unit.format = TextureFormat::A8R8G8B8;
+            let reachable = unit.levels.len();
+            (unit.levels, unit.face_words) = Level::chain(unit.format, *width, *height, *levels, *border);
+            unit.levels.truncate(reachable);
+        }
+    }
+}
+
+/// Replaces textures that read the colours of a render target by zeros.
+pub(super) fn blacken(plan: &mut Plan) {
+    for index in 0..plan.textures.len() {
+        let TextureImage::Target { .. } = plan.textures[index].image else { continue };
+        let mut units = plan.draws.iter().flat_map(|draw| &draw.units);
+        let Some(level) = units.find(|unit| unit.state.texture == index).map(|unit| unit.levels[0]) else { continue };
+        let (width, height) = (level.width, level.height);
+        let words = vec![0; plan.textures[index].format.words(width, height)].into();
+        let texels = Texels { width, height, levels: 1, layers: 1, border: false, words };
+        plan.textures[index].image = TextureImage::Texels(texels);
+    }
+}
+
+/// Returns the words of all images in A8R8G8B8, or `None` if there are border texels.
+fn converted(texels: &Texels, format: TextureFormat, kind: TextureKind, shortcut: Shortcut) -> Option<Vec<u32>> {
+    if texels.border {
+        return None;
+    }
+    let (levels, face_words) = Level::chain(format, texels.width, texels.height, texels.levels, false);
+    let faces = if kind == TextureKind::Cube { crate::state::CUBE_FACES } else { texels.layers };
+    let mut words = Vec::new();
+    for face in 0..faces as usize {
+        for level in &levels {
+            for (y, x) in (0..level.height).flat_map(|y| (0..level.width).map(move |x| (y, x))) {
+                let first = face * face_words + level.offset;
+                let bytes = if format.is_compressed() {
+                    let size = format.bytes() as usize / 4;
+                    let block = (y / 4 * level.width.div_ceil(4) + x / 4) as usize * size;
+                    let block = texels.words.get(first + block..first + block + size)?;
+                    compressed::decode_undithered(format, block, (x, y), shortcut == Shortcut::CutBlocks)
+                } else {
+                    let word = *texels.words.get(first + (y * level.width + x) as usize)?;
+                    format::shifted(format, word)
+                };
+                let [r, g, b, a] = bytes.map(u32::from);
+                words.push(a << 24 | r << 16 | g << 8 | b);
+            }
+        }
+    }
+    Some(words)
+}

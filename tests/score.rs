@@ -1,0 +1,179 @@
+//! Tests the scorecard: planted causes are found, right pictures have none, and noise is not explained. No captures are needed: the model's own frames
+//! stand for the chip's.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use crate::bench::Bench;
+use crate::pages;
+use crate::repository::at;
+
+use std::collections::BTreeSet;
+use std::fs;
+
+use ninebit::limits::Limits;
+use ninebit::random::Random;
+use ninebit::shortcut::{Shortcut, Shortcuts};
+use ninebit::state::Named;
+use ninebit_files::output::{Compression, encode_png};
+use ninebit_scene::image::Rgba;
+use ninebit_score::{Class, Explained, FrameScore, Subject, Truth, causes, of_scene, score};
+
+/// Scenes of several units.
+const SCENES: [&str; 5] = [
+    "fog/modes",
+    "dot3/constant-light",
+    "programs/dot3-combiners",
+    "programs/lit-combiners",
+    "texture-shader/mirror-ball",
+];
+
+/// So many pixels of a frame have to change before a cause can be told from chance.
+const ENOUGH: u64 = 200;
+
+fn subject(name: &str) -> Option<Subject> {
+    let path = at("vectors/scenes").join(format!("{name}.ron"));
+    // The images of the captured programs need not be there.
+    let loaded = ninebit_scene::load(&path, &Limits::default()).ok()?;
+    let (suite, own) = name.split_once('/')?;
+    of_scene(suite.to_owned(), own.to_owned(), loaded.scene)
+}
+
+fn draw(subject: &Subject, shortcuts: Shortcuts) -> Option<Rgba> {
+    let Truth::Model(width) = subject.truth else { return None };
+    Some(Rgba::new(width, subject.drawing.as_ref()?.draw(shortcuts, None)?))
+}
+
+fn explained(scored: &FrameScore) -> &Explained {
+    scored.explained.as_ref().unwrap()
+}
+
+/// Draws scenes as a renderer with one shortcut does, and with two, and looks for the causes.
+#[test]
+fn planted_causes_are_found() {
+    let (mut planted, mut missed) = (0, Vec::new());
+    for subject in SCENES.into_iter().filter_map(subject) {
+        let truth = draw(&subject, Shortcuts::NONE).unwrap();
+        let concerning: Vec<Shortcut> = subject.drawing.as_ref().unwrap().shortcuts().iter().collect();
+        let one = concerning.iter().map(|shortcut| Shortcuts::NONE.with(*shortcut));
+        let two = concerning.windows(2).map(|two| two.iter().copied().collect::<Shortcuts>());
+        let mut of_scene = 0;
+        for variant in one.chain(two) {
+            let other = draw(&subject, variant).unwrap();
+            let steps = |(a, b): (&[u8; 4], &[u8; 4])| [0, 1, 2].map(|n| i16::from(a[n]) - i16::from(b[n]));
+            let all = truth.pixels().iter().zip(other.pixels()).map(steps);
+            let changed: Vec<[i16; 3]> = all.filter(|step| *step != [0; 3]).collect();
+            let different: BTreeSet<[i16; 3]> = changed.iter().copied().collect();
+            if (changed.len() as u64) < ENOUGH || different.len() < 4 || of_scene == 6 {
+                continue;
+            }
+            (planted, of_scene) = (planted + 1, of_scene + 1);
+            let scored = score(&subject, &truth, &other, true);
+            let found = causes::choose([explained(&scored)].into_iter());
+            // Another set may draw the same pixels.
+            if found.explained() * 100 < found.wrong * 95 {
+                let (explained, wrong) = (found.explained(), found.wrong);
+                missed.push(format!("{subject:?} {}: {explained} of {wrong}, {:?}", variant.names(), found.variants()));
+            }
+        }
+    }
+
+    assert!(planted >= 20, "{planted} planted");
+    // One frame alone does not always tell a pair from chance.
+    assert!(missed.len() * 20 <= planted, "{} of {planted} missed: {missed:#?}", missed.len());
+}
+
+#[test]
+fn right_pictures_have_no_causes() {
+    for name in ["dot3/block", "fog/modes"] {
+        let subject = subject(name).unwrap();
+        let truth = draw(&subject, Shortcuts::NONE).unwrap();
+        let scored = score(&subject, &truth, &truth, true);
+        assert_eq!((scored.class, scored.counts.wrong), (Class::Exact, 0));
+        assert!(scored.explained.is_none());
+    }
+}
+
+/// Errors of one to three steps, of a tenth of the pixels and of all, are no cause.
+#[test]
+fn noise_is_not_explained() {
+    for (name, share) in [("dot3/block", 10), ("fog/modes", 1_u128)] {
+        let subject = subject(name).unwrap();
+        let truth = draw(&subject, Shortcuts::NONE).unwrap();
+        let mut random = Random::seeded(71);
+        let mut noisy = truth.clone();
+        for pixel in noisy.pixels_mut() {
+            if random.below(share) == 0 {
+                (0..3).for_each(|n| pixel[n] = pixel[n].saturating_add_signed(random.below(7) as i8 - 3));
+            }
+        }
+        let scored = score(&subject, &truth, &noisy, true);
+        assert_eq!(scored.class, Class::Wrong);
+        let found = causes::choose([explained(&scored)].into_iter());
+        assert!(found.explained() * 100 < found.wrong, "{name} {share}: {found:?}");
+    }
+}
+
+/// Writes a folder of pictures of scenes as a renderer with shortcuts draws them.
+fn pictures(bench: &Bench, folder: &str, shortcuts: &str) {
+    for name in ["fog/modes", "fog/corridor"] {
+        let picture = draw(&subject(name).unwrap(), Shortcuts::from_names(shortcuts).unwrap_or_default()).unwrap();
+        let png = encode_png(picture.width(), picture.height(), picture.pixels(), Compression::Fast).unwrap();
+        let path = bench.path(folder).join(format!("{}.png", name.trim_start_matches("fog/")));
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, png).unwrap();
+    }
+}
+
+#[test]
+fn reports_of_folders() {
+    let bench = Bench::new();
+    pictures(&bench, "old", "float-fog+vertex-fog");
+    pictures(&bench, "new", "float-fog");
+    let scenes = at("vectors/scenes/fog");
+    let command = |rest: &str| format!("score --scenes {} {rest}", scenes.display());
+    let text = bench.run(&command("--results old --results new -o report")).text();
+    assert!(text.contains("FOG-2") && text.contains("float-fog") && text.contains("(100.0 %)"), "{text}");
+    let page = fs::read_to_string(bench.path("report/index.html")).unwrap();
+    for part in ["History", "Cause by cause", "For a bug report", "ninebit rule FOG-2", "-causes.png"] {
+        assert!(page.contains(part), "{part}");
+    }
+    let document: serde_json::Value =
+        serde_json::from_slice(&fs::read(bench.path("report/score.json")).unwrap()).unwrap();
+    assert_eq!(document["format"], "ninebit-score-1");
+    assert_eq!(document["runs"][1]["total"]["missing"], 1);
+    assert!(fs::read_to_string(bench.path("report/badge.svg")).unwrap().starts_with("<svg"));
+    // An earlier report is replaced, another folder is not.
+    bench.run(&command("--results new -o report --no-causes")).text();
+    bench.run(&command("--results new -o new")).failed(2, "is no report");
+    bench.run(&command("--results new --no-causes --at-least 0")).text();
+    assert_eq!(bench.run(&command("--results new --no-causes --at-least 100")).status, 1);
+    bench.run(&command("--results none")).failed(3, "NB0526");
+    bench.run("score --results new").failed(2, "--captures");
+}
+
+/// Pictures that are damaged, of another size, or of no frame are counted, and stop nothing.
+#[test]
+fn hostile_pictures() {
+    let bench = Bench::new();
+    pictures(&bench, "results", "");
+    bench.write("results/modes.png", b"\x89PNG\r\n\x1a\n and no more");
+    let small = encode_png(2, 2, &[[0, 0, 0, 255]; 4], Compression::Fast).unwrap();
+    bench.write("results/corridor.png", small);
+    bench.write("results/stranger.png", b"");
+    let scenes = at("vectors/scenes/fog");
+    let run = bench.run(&format!("score --scenes {} --results results --format json", scenes.display()));
+    let document: serde_json::Value = serde_json::from_slice(&run.data()).unwrap();
+    let run = &document["runs"][0];
+    assert_eq!((&run["total"]["unreadable"], &run["foreign"][0]), (&2.into(), &"/stranger".into()));
+}
+
+/// The catalogue of shortcuts is that of the code.
+#[test]
+fn the_catalogue_is_written() {
+    let mut table = String::from("| shortcut | rules | a renderer that |\n|---|---|---|\n");
+    for shortcut in Shortcut::ALL {
+        let link = |id: &&str| format!("[{id}](../rules/{})", ninebit_handbook::find(id).unwrap().link());
+        let rules: Vec<String> = shortcut.reading().rules.iter().map(link).collect();
+        table += &format!("| `{}` | {} | {} |\n", shortcut.name(), rules.join(", "), shortcut.reading().does);
+    }
+    pages::hold("docs/evidence/shortcuts.md", "tests/score.rs (shortcuts)", &table);
+}
