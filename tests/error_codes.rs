@@ -96,6 +96,10 @@ fn exit(code: &str) -> u8 {
         "NB12" => 3,
         "NB08" if code == "NB0802" => 5,
         "NB13" | "NB14" => 2,
+        "NB16" if code == "NB1602" => 4,
+        "NB16" if ["NB1603", "NB1606"].contains(&code) => 5,
+        "NB16" if code == "NB1607" => 0,
+        "NB16" => 3,
         _ => 6,
     }
 }

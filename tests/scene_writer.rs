@@ -262,7 +262,7 @@ fn a_text_returns() {
 #[test]
 fn scenes_of_the_repository_return() {
     let mut paths = scene_files::below(&at("vectors/scenes"));
-    paths.extend(scene_files::below(&at("tests")));
+    paths.extend(scene_files::below(&at("tests/cases")));
     assert!(paths.len() > 200, "{}", paths.len());
     let unwritable = all_return(&paths, |path| {
         let loaded = scene::load(path, &Limits::default()).unwrap();

@@ -58,6 +58,7 @@ mod engines;
 mod error_codes;
 mod explain;
 mod files;
+mod import;
 mod metamorphic;
 mod op;
 mod oracle;

@@ -225,7 +225,7 @@ impl Builder {
         let name = format!("draw {number} at line {line}: {primitive} of {count} vertices");
         let draw = draw.map(|draw| {
             self.known[draw.target].uses += 1;
-            self.draws.push(Draw { name: name.clone(), ..draw });
+            self.draws.push(Draw { name: format!("draw {number}, line {line}"), ..draw });
             self.draws.len() - 1
         });
         self.drawn.push(Drawn { line, number: Some(number), draw, name, gaps: view.finish() });

@@ -19,8 +19,7 @@ use ninebit_methods::state::State;
 use ninebit_report::explain::{explain, explanation_text};
 use ninebit_scene::write::{self, WriteOptions};
 
-#[derive(Debug, clap::Args)]
-#[group(id = "result", required = true, multiple = true, args = ["output", "explain"])]
+#[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// The log, in any of the forms that emulators, hardware tracers and recompilers print; `-` is standard input
     #[arg(value_name = "LOG", required_unless_present = "push_buffer")]

@@ -107,7 +107,7 @@ enum Command {
     /// Make scenes of a log of a real program: methods of the Xbox's 3D class, as emulators, tracers and recompilers print them
     ///
     /// State is followed from the first line on; each frame becomes a scene. A draw that needs something that neither the log nor the memory has is
-    /// marked incomplete, with the reason. Nothing is invented: a white texel stands for a texture that was not recorded.
+    /// marked incomplete, with the reason. Without `-o` and `--explain` only counts are printed. Nothing is invented: a white texel stands for a texture that was not recorded.
     Import(import::Arguments),
     /// Write a scene as methods of the Xbox's 3D class, with the memory that they read
     ///

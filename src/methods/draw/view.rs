@@ -16,7 +16,11 @@ pub(crate) struct View<'a> {
 }
 
 /// The values that stand for words of state that are not known, where 0 would draw nothing or divide by 0: those that drivers set first.
-const NEUTRAL: [(u32, u32); 17] = [
+const NEUTRAL: [(u32, u32); 21] = [
+    (class::SET_SURFACE_CLIP_HORIZONTAL, 640 << 16),
+    (class::SET_SURFACE_CLIP_VERTICAL, 480 << 16),
+    (class::SET_SURFACE_FORMAT, 0x128),
+    (class::SET_CONTROL0, 0x10_0001),
     (class::SET_ALPHA_FUNC, 0x207),
     (class::SET_BLEND_FUNC_SFACTOR, 1),
     (class::SET_BLEND_EQUATION, 0x8006),

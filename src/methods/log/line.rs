@@ -1,11 +1,11 @@
 //! A line of a log.
 
-use super::Write;
+use super::event::Write;
 use crate::class::{KELVIN, SET_TRANSFORM_PROGRAM};
 
 /// The content of a line.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Line {
+pub(super) enum Line {
     /// A comment, an empty line, or an event that says nothing of methods.
     Nothing,
     /// A method and its word.
@@ -34,7 +34,7 @@ pub enum Line {
 }
 
 /// Reads a line without its end.
-pub fn line(text: &str) -> Line {
+pub(super) fn line(text: &str) -> Line {
     let text = without_prefix(text);
     if text.is_empty() || text.starts_with('#') || text.starts_with("==") {
         return Line::Nothing;

@@ -1,18 +1,7 @@
 //! Words of a push buffer: headers and what follows them.
 
-use super::{Event, Write};
+use super::event::{Event, Fault, Write};
 use crate::class::KELVIN;
-
-/// A word of a push buffer that makes no sense.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fault {
-    /// A header of no known form.
-    Header(u32),
-    /// A jump, a call or a return in words whose memory is not given.
-    Branch(u32),
-    /// The words end within a command, which lacks so many.
-    End(u32),
-}
 
 /// Decodes words one by one. Without memory it cannot follow jumps.
 #[derive(Clone, Copy, Debug)]

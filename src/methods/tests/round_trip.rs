@@ -84,7 +84,7 @@ fn committed_scenes_come_back() {
             *refused.entry("only of nv10".into()).or_default() += 1;
             continue;
         }
-        let name = path.strip_prefix(&root).unwrap().display().to_string();
+        let name = path.strip_prefix(&root).unwrap().to_string_lossy().into_owned();
         match trip(&loaded.scene, number % 3 == 0) {
             Ok(None) => same += 1,
             Ok(Some(difference)) => wrong.push(format!("{name}: {difference}")),

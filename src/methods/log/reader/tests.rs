@@ -1,4 +1,5 @@
 use super::*;
+use crate::log::Fault;
 
 fn read(text: &str) -> (Vec<Event>, Reader) {
     let (mut reader, mut events) = (Reader::new(), Vec::new());

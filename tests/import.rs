@@ -1,0 +1,105 @@
+//! `ninebit import` and `ninebit export`.
+#![allow(missing_docs, clippy::unwrap_used, unreachable_pub, reason = "a test binary")]
+
+use crate::bench::Bench;
+use crate::repository::at;
+
+/// A log of a triangle of immediate vertices on a surface of 16 x 16, with one stage of combiners.
+const LOG: &str = "\
+nv2a_pgraph_method 0: 0x97 -> 0x0200 NV097_SET_SURFACE_CLIP_HORIZONTAL[0] 0x100000
+nv2a_pgraph_method 0: 0x97 -> 0x0204 NV097_SET_SURFACE_CLIP_VERTICAL[0] 0x100000
+nv2a_pgraph_method 0: 0x97 -> 0x0208 NV097_SET_SURFACE_FORMAT[0] 0x128
+nv2a_pgraph_method 0: 0x97 -> 0x0260 NV097_SET_COMBINER_ALPHA_ICW[0] 0x0
+nv2a_pgraph_method 0: 0x97 -> 0x0ac0 NV097_SET_COMBINER_COLOR_ICW[0] 0x4010000
+nv2a_pgraph_method 0: 0x97 -> 0x0a60 NV097_SET_COMBINER_FACTOR0[0] 0xff804020
+nv2a_pgraph_method 0: 0x97 -> 0x1e40 NV097_SET_COMBINER_COLOR_OCW[0] 0xc00
+nv2a_pgraph_method 0: 0x97 -> 0x1e60 NV097_SET_COMBINER_CONTROL[0] 0x101
+nv2a_pgraph_method 0: 0x97 -> 0x0288 NV097_SET_COMBINER_SPECULAR_FOG_CW0[0] 0xc
+nv2a_pgraph_method 0: 0x97 -> 0x028c NV097_SET_COMBINER_SPECULAR_FOG_CW1[0] 0x1c80
+nv2a_pgraph_method 0: 0x97 -> 0x1e94 NV097_SET_TRANSFORM_EXECUTION_MODE[0] 0x6
+nv2a_pgraph_method 0: 0x97 -> 0x17fc NV097_SET_BEGIN_END[0] 0x5
+nv2a_pgraph_method 0: 0x97 -> 0x17fc NV097_SET_BEGIN_END[0] 0x0
+nv2a_pgraph_method 0: 0x97 -> 0x0310 NV097_SET_DITHER_ENABLE[0] 0x1
+nv2a_pgraph_flip_stall
+";
+
+#[test]
+fn a_scene_goes_there_and_back() {
+    let bench = Bench::new();
+    let scene = at("vectors/scenes/sampling/shadow-map.ron");
+    let scene = scene.display();
+    for (form, log) in [("methods", "there/methods.log"), ("pushbuffer", "")] {
+        let text = bench.run(&format!("export {scene} --to {form} -o there")).text();
+        assert!(text.contains("memory.bin") && text.contains("frame"), "{text}");
+        let words = std::fs::read(bench.path("there/pushbuffer.bin")).unwrap_or_default();
+        let source = if log.is_empty() {
+            // The words behind the memory, as a program's push buffer lies in it.
+            let mut memory = std::fs::read(bench.path("there/memory.bin")).unwrap();
+            let first = memory.len();
+            memory.extend(&words);
+            bench.write("there/memory.bin", &memory);
+            format!("--push-buffer 0x{first:x}..0x{:x}", memory.len())
+        } else {
+            log.to_owned()
+        };
+        let command = format!("import {source} --memory there/memory.bin --surfaces-in-memory -o back");
+        let text = bench.run(&command).text();
+        assert!(text.contains("of 3 that were asked for 3 are complete"), "{text}");
+        bench.run("render back/frame-0000.ron -o back.png").text();
+        bench.run(&format!("render {scene} -o scene.png")).text();
+        assert!(bench.run("diff back.png scene.png").text().contains("equal"));
+        for folder in ["there", "back"] {
+            std::fs::remove_dir_all(bench.path(folder)).unwrap();
+        }
+        for picture in ["back.png", "scene.png"] {
+            std::fs::remove_file(bench.path(picture)).unwrap();
+        }
+    }
+    let text = bench.run(&format!("export {scene} --to pgraph-c -o console")).text();
+    assert!(text.contains("shadow-map.c"), "{text}");
+}
+
+#[test]
+fn draws_are_explained() {
+    let bench = Bench::new();
+    bench.write("game.log", LOG);
+    let vertices = "0x194c 0xff0000ff\n0x1500 0x0\n0x1504 0x0\n0x1508 0x0\n".repeat(3);
+    let whole = LOG.replace("[0] 0x5\n", &format!("[0] 0x5\n{vertices}")).replace("[0] 0x6\n", "[0] 0x4\n");
+    bench.write("whole.log", &whole);
+    let text = bench.run("import whole.log --explain").text();
+    assert!(
+        text.contains("SET_COMPOSITE_MATRIX[0] to 0x06bc SET_COMPOSITE_MATRIX[15] were never set in this log"),
+        "{text}"
+    );
+    assert!(text.contains("frames 1, draws 1; of 1 that were asked for 0 are complete"), "{text}");
+    // The same log is a program.
+    let text = bench.run("registers game.log").text();
+    assert!(text.contains("RC_IN_RGB") && text.contains("04010000"), "{text}");
+    let text = bench.run("op program --words game.log --in primary=255,255,255,255").text();
+    assert!(text.contains("128"), "{text}");
+    // What the user knows fills in.
+    bench.write("known.txt", "SET_COMPOSITE_MATRIX[0] 1.0\n# and so on\n");
+    let text = bench.run("import whole.log --explain --assume known.txt").text();
+    assert!(text.contains("0x0684 SET_COMPOSITE_MATRIX[1] to"), "{text}");
+}
+
+#[test]
+fn wrong_inputs_are_refused() {
+    let bench = Bench::new();
+    bench
+        .write("game.log", LOG)
+        .write("empty.log", "hello\n")
+        .write("ram.bin", [1, 0, 0, 0])
+        .write("state.txt", "SET_NOTHING 1\n");
+    bench.run("import no.log --explain").failed(4, "NB1602");
+    bench.run("import empty.log --explain").failed(3, "NB1605");
+    bench.run("import game.log --explain --assume state.txt").failed(3, "NB1601");
+    assert!(bench.run("import game.log").text().contains("draws 1; of 1 that were asked for 0 are complete"));
+    bench.run("import game.log --frame 7 -o out").failed(2, "no frame 7");
+    bench.run("import --memory ram.bin --push-buffer 0x0..0x8 --explain").failed(3, "NB1604");
+    bench.run("import --memory ram.bin --push-buffer 0x8..0x4 --explain").failed(2, "two addresses");
+    assert!(!bench.path("out").exists());
+    let scene = at("vectors/scenes/dot3/lit-stone.ron");
+    bench.run(&format!("export {} --to methods -o out", scene.display())).failed(3, "NB1610");
+    assert!(!bench.path("out").exists());
+}
