@@ -36,7 +36,7 @@ pub fn decode(format: TextureFormat, dithered: bool, block: &[u32], x: u32, y: u
     let texel = 4 * (y & 3) + (x & 3);
     match (format, block) {
         (TextureFormat::Dxt1, &[colors, indices]) => {
-            let (index, four_colors) = (indices >> (2 * texel) & 3, colors & 0xffff > colors >> 16);
+            let (index, four_colors) = (indices >> (2 * texel) & 3, has_four_colors(colors));
             if index == 3 && !four_colors {
                 return NOTHING;
             }
@@ -56,6 +56,11 @@ pub fn decode(format: TextureFormat, dithered: bool, block: &[u32], x: u32, y: u
     }
 }
 
+/// Returns whether a block of DXT1 with these two colours has four colours in all; otherwise it has three, and a transparent index.
+fn has_four_colors(colors: u32) -> bool {
+    colors & 0xffff > colors >> 16
+}
+
 /// Returns the bytes of [`decode`] with every mixture made at eight bits and without dither, rounded to nearest or `cut`: as renderers do that do
 /// not know TEX-3.
 pub(crate) fn decode_undithered(format: TextureFormat, block: &[u32], (x, y): (u32, u32), cut: bool) -> [u8; 4] {
@@ -65,7 +70,7 @@ pub(crate) fn decode_undithered(format: TextureFormat, block: &[u32], (x, y): (u
         _ => return decoded.bytes,
     };
     let dxt1 = format == TextureFormat::Dxt1;
-    let (index, four_colors) = (indices >> (2 * (4 * (y & 3) + (x & 3))) & 3, !dxt1 || colors & 0xffff > colors >> 16);
+    let (index, four_colors) = (indices >> (2 * (4 * (y & 3) + (x & 3))) & 3, !dxt1 || has_four_colors(colors));
     if index == 3 && !four_colors {
         return decoded.bytes;
     }
