@@ -280,7 +280,7 @@ fn refused() -> Result<(), Failed> {
         r#"{"do":"edit","draw":0,"path":["constants",0],"value":[1,2,300,4]}"#,
         r#"{"do":"paste","draw":0,"language":"Fortran","program":""}"#,
         r#"{"do":"lower","draw":0,"language":"verilog"}"#,
-        r#"{"do":"lower","draw":9,"language":"glsl"}"#,
+        r#"{"do":"lower","draw":99,"language":"glsl"}"#,
         r#"{"do":"picture","name":"","width":3,"height":2}"#,
     ] {
         assert!(ask(request)["error"].is_string(), "{request}");
