@@ -71,7 +71,7 @@ pub(crate) fn decode_undithered(format: TextureFormat, block: &[u32], (x, y): (u
     };
     let dxt1 = format == TextureFormat::Dxt1;
     let (index, four_colors) = (indices >> (2 * (4 * (y & 3) + (x & 3))) & 3, !dxt1 || has_four_colors(colors));
-    if index == 3 && !four_colors {
+    if !four_colors && index == 3 {
         return decoded.bytes;
     }
     let mix = Mix::from_index(colors, index, four_colors);
