@@ -1,28 +1,28 @@
 //! Frames: the draws and clears between two flips, as a scene.
 
 use std::collections::HashMap;
-use std::sync::Arc;
 
 use ninebit::plan::{Plan, PlanError, PlanOptions};
 use ninebit::raster::depth;
+use ninebit::rop;
 use ninebit::state::{
-    CompareFunction, DepthBuffer, DepthTest, Draw, Named, Palette, Profile, Rectangle, Scene, ShaderOperation,
-    StencilOperation, StencilTest, TEXTURE_UNITS, Target, Texture, TextureFormat, TextureImage, TextureKind,
-    TextureUnit, Topology, Vertex, VertexColor, VertexDepths,
+    DepthBuffer, Draw, Named, Palette, Profile, Rectangle, Scene, ShaderOperation, TEXTURE_UNITS, Target, Texture,
+    TextureFormat, TextureImage, TextureKind, TextureUnit, VertexDepths,
 };
+use ninebit_scene::clear::Clear;
 
 use crate::class;
-use crate::draw::surface::{Surface, clear_color, surface};
+use crate::draw::surface::{Surface, surface};
 use crate::draw::texture::{Image, entries, image, palette, unit};
 use crate::draw::view::View;
 use crate::draw::{raster, shader, vertices};
 use crate::gap::Gap;
-use crate::memory::{Layout, Memory, words};
+use crate::memory::{Layout, Memory, raw, words};
 use crate::state::{Batch, State};
 
 /// A draw or a clear of a frame.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Drawn {
+pub struct Operation {
     /// Line of the log.
     pub line: u64,
     /// Number among the draws of the log, from 0; clears have none.
@@ -43,7 +43,7 @@ pub struct Frame {
     /// The scene; it has no target if nothing was drawn.
     pub scene: Scene,
     /// The draws and clears in order.
-    pub drawn: Vec<Drawn>,
+    pub drawn: Vec<Operation>,
 }
 
 impl Frame {
@@ -53,9 +53,9 @@ impl Frame {
     }
 }
 
-/// What is known of a target.
+/// How the frame has used a target so far.
 #[derive(Clone, Debug)]
-struct Known {
+struct TargetUse {
     surface: Surface,
     uses_depth: bool,
     /// Number of draws and clears into it.
@@ -67,37 +67,25 @@ struct Known {
 }
 
 /// Builds the scene of a frame.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Builder {
     number: u64,
     surfaces_in_memory: bool,
     targets: Vec<Target>,
-    known: Vec<Known>,
+    known: Vec<TargetUse>,
     textures: Vec<Texture>,
     images: HashMap<Image, (usize, Option<Gap>)>,
     shown: HashMap<(usize, bool, TextureKind, TextureFormat), usize>,
     palettes: Vec<Palette>,
     palette_places: HashMap<(u32, usize), usize>,
     draws: Vec<Draw>,
-    drawn: Vec<Drawn>,
+    drawn: Vec<Operation>,
 }
 
 impl Builder {
     /// Makes a builder of a frame. `surfaces_in_memory` says that memory has what surfaces held before the frame.
     pub(crate) fn new(number: u64, surfaces_in_memory: bool) -> Builder {
-        Builder {
-            number,
-            surfaces_in_memory,
-            targets: Vec::new(),
-            known: Vec::new(),
-            textures: Vec::new(),
-            images: HashMap::new(),
-            shown: HashMap::new(),
-            palettes: Vec::new(),
-            palette_places: HashMap::new(),
-            draws: Vec::new(),
-            drawn: Vec::new(),
-        }
+        Builder { number, surfaces_in_memory, ..Builder::default() }
     }
 
     /// Returns whether nothing was drawn.
@@ -109,28 +97,25 @@ impl Builder {
     pub(crate) fn clear(&mut self, state: &State, line: u64, word: u32) {
         let mut view = View::new(state);
         let name = format!("clear at line {line}");
-        let stated = surface(&mut view).and_then(|surface| {
-            let (depth, stencil) = (word & 1 != 0, word & 2 != 0 && surface.depth.has_stencil());
-            let target = self.target(&mut view, &surface, depth || stencil)?;
-            self.clear_target(&mut view, (target, &surface), word, (depth, stencil));
+        let draw = surface(&mut view).and_then(|surface| {
+            let zeta = (word & 1 != 0, word & 2 != 0 && surface.depth.has_stencil());
+            let target = self.target(&mut view, &surface, zeta.0 || zeta.1)?;
+            let clear = self.clear_target(&mut view, (target, &surface), word, zeta);
             self.known[target].uses += 1;
-            Some(())
+            self.draws.push(clear?.draw(name.clone(), target));
+            Some(self.draws.len() - 1)
         });
-        // A clear that became the target's own is no draw.
-        let draw = stated.and_then(|()| {
-            self.draws.last_mut().filter(|draw| draw.name.is_empty()).map(|draw| draw.name.clone_from(&name))
-        });
-        let draw = draw.map(|()| self.draws.len() - 1);
-        self.drawn.push(Drawn { line, number: None, draw, name, gaps: view.finish() });
+        self.drawn.push(Operation { line, number: None, draw, name, gaps: view.finish() });
     }
 
+    /// Clears a target to what it holds first; returns any other clear, if it has pixels.
     fn clear_target(
         &mut self,
         view: &mut View<'_>,
         (target, surface): (usize, &Surface),
         word: u32,
         (clears_depth, clears_stencil): (bool, bool),
-    ) {
+    ) -> Option<Clear> {
         // R, G, B, A.
         let mask = [4, 5, 6, 7].map(|bit| word >> bit & 1 != 0);
         let mut axis = |method, start: u32, length: u32| {
@@ -142,12 +127,9 @@ impl Builder {
         let (x, width) = axis(class::SET_CLEAR_RECT_HORIZONTAL, clip.x, clip.width);
         let (y, height) = axis(class::SET_CLEAR_RECT_VERTICAL, clip.y, clip.height);
         let (colors, zeta) = (mask.contains(&true), clears_depth || clears_stencil);
-        let color = if colors { view.get(class::SET_COLOR_CLEAR_VALUE) } else { 0 };
+        // CLR-1.
+        let color = colors.then(|| rop::surface::read(surface.format, view.get(class::SET_COLOR_CLEAR_VALUE)));
         let zstencil = if zeta { view.get(class::SET_ZSTENCIL_CLEAR_VALUE) } else { 0 };
-        let (color, exact) = clear_color(surface.format, color);
-        if colors && !exact {
-            view.note(Gap::NotModelled("bits of a clear's colour that the surface's format does not use".into()));
-        }
         let (depth_word, stencil_byte) = match surface.depth.has_stencil() {
             true => (zstencil >> 8, zstencil as u8),
             false => (zstencil & 0xffff, 0),
@@ -160,7 +142,7 @@ impl Builder {
         }
         let complete = !zeta || clears_depth && (clears_stencil || !surface.depth.has_stencil());
         if self.known[target].uses == 0 && area == whole && (all || !colors) && complete {
-            if colors {
+            if let Some(color) = color {
                 self.targets[target].clear_color = color;
                 self.known[target].is_cleared = true;
             }
@@ -168,37 +150,20 @@ impl Builder {
                 let buffer = DepthBuffer { format: surface.depth, clear: depth_word, clear_stencil: stencil_byte };
                 self.targets[target].depth = Some(buffer);
             }
-            return;
+            return None;
         }
         if colors {
             self.contents(view, target);
         }
-        let mut draw = rectangle(area, color);
-        draw.target = target;
-        draw.color_mask = mask;
-        if clears_depth {
-            let z = depth::of_word(surface.depth, depth_word).unwrap_or_else(|| {
+        let depth = clears_depth.then(|| {
+            let depth = depth::of_word(surface.depth, depth_word).unwrap_or_else(|| {
                 view.note(Gap::NotModelled(format!("a clear to the float depth 0x{depth_word:x}")));
                 0.0
             });
-            draw.depth_test =
-                Some(DepthTest { vertex_depths: VertexDepths::Steps, ..DepthTest::new(CompareFunction::Always, true) });
-            draw.vertices.map_positions(|[x, y, _, w]| [x, y, z, w]);
-        }
-        if clears_stencil {
-            draw.stencil_test = Some(StencilTest {
-                function: CompareFunction::Always,
-                reference: stencil_byte,
-                mask: 255,
-                write_mask: 255,
-                fail: StencilOperation::Keep,
-                depth_fail: StencilOperation::Keep,
-                pass: StencilOperation::Replace,
-            });
-        }
-        if width > 0 && height > 0 {
-            self.draws.push(draw);
-        }
+            (VertexDepths::Steps, depth)
+        });
+        let stencil = clears_stencil.then_some(stencil_byte);
+        (width > 0 && height > 0).then_some(Clear { area, color, color_mask: mask, depth, stencil })
     }
 
     /// Notes once that a target held something before the log.
@@ -214,13 +179,8 @@ impl Builder {
     pub(crate) fn draw(&mut self, state: &State, memory: &Memory, batch: &Batch, number: u64) {
         let mut view = View::new(state);
         let line = batch.line;
-        let (draw, count) = match self.lower(&mut view, memory, batch) {
-            Some(draw) => {
-                let count = draw.indices.len();
-                (Some(draw), count)
-            }
-            None => (None, 0),
-        };
+        let draw = self.lower(&mut view, memory, batch);
+        let count = draw.as_ref().map_or(0, |draw| draw.indices.len());
         let primitive = raster::topology(batch.primitive).map_or("unknown primitive", Named::name);
         let name = format!("draw {number} at line {line}: {primitive} of {count} vertices");
         let draw = draw.map(|draw| {
@@ -228,13 +188,13 @@ impl Builder {
             self.draws.push(Draw { name: format!("draw {number}, line {line}"), ..draw });
             self.draws.len() - 1
         });
-        self.drawn.push(Drawn { line, number: Some(number), draw, name, gaps: view.finish() });
+        self.drawn.push(Operation { line, number: Some(number), draw, name, gaps: view.finish() });
     }
 
     /// Takes a draw that the end of the log cuts off, and does not state it.
     pub(crate) fn unfinished(&mut self, batch: &Batch, number: u64) {
         let name = format!("draw {number} at line {}", batch.line);
-        self.drawn.push(Drawn {
+        self.drawn.push(Operation {
             line: batch.line,
             number: Some(number),
             draw: None,
@@ -257,9 +217,7 @@ impl Builder {
         let tests = draw.depth_test.is_some() || draw.stencil_test.is_some();
         draw.target = self.target(view, &surface, tests)?;
         self.contents(view, draw.target);
-        let whole = self.targets[draw.target].width == surface.clip.width
-            && self.targets[draw.target].height == surface.clip.height;
-        draw.scissor = (!whole).then_some(surface.clip);
+        draw.scissor = Some(surface.clip);
         draw.combiners = shader::combiners(view)?;
         self.units(view, memory, &mut draw);
         Some(draw)
@@ -268,10 +226,10 @@ impl Builder {
     /// Returns the target of a surface, which grows with its clip.
     fn target(&mut self, view: &mut View<'_>, surface: &Surface, uses_depth: bool) -> Option<usize> {
         let [width, height] = surface.size();
-        let same = |known: &Known| {
+        let same = |known: &TargetUse| {
             known.surface.color == surface.color && known.surface.format.bytes() == surface.format.bytes()
         };
-        let shares = |known: &Known| {
+        let shares = |known: &TargetUse| {
             known.uses_depth && known.surface.zeta == surface.zeta && known.surface.color != surface.color
         };
         if uses_depth && self.known.iter().any(shares) {
@@ -285,7 +243,7 @@ impl Builder {
                     clear_color: [0, 0, 0, 0],
                     ..Target::new(width, height, surface.format)
                 });
-                self.known.push(Known {
+                self.known.push(TargetUse {
                     surface: *surface,
                     uses_depth: false,
                     uses: 0,
@@ -433,14 +391,14 @@ impl Builder {
         if self.surfaces_in_memory {
             for (target, known) in self.targets.iter_mut().zip(&self.known).filter(|(_, known)| !known.is_cleared) {
                 let layout = known.surface.swizzled.map_or(Layout::Pitch(known.surface.pitch), |_| Layout::Swizzled);
-                let (format, size) = (target.format.texture_format(), [target.width, target.height, 1]);
+                let (format, size) = (raw(target.format), [target.width, target.height, 1]);
                 target.contents = words(memory, known.surface.color.into(), format, size, layout).map(Into::into);
             }
         }
         let Builder { number, targets, textures, palettes, draws, mut drawn, .. } = self;
         let mut scene = Scene { profile: Profile::Nv2a, targets, textures, palettes, draws };
         for draw in &mut scene.draws {
-            // The clip may have grown afterwards.
+            // Until here a target may have grown by the clip of a later draw.
             let target = &scene.targets[draw.target];
             if draw.scissor == Some(Rectangle { x: 0, y: 0, width: target.width, height: target.height }) {
                 draw.scissor = None;
@@ -457,7 +415,7 @@ impl Builder {
 }
 
 /// Removes the draws that errors name, and notes the errors. Returns whether there are any.
-fn leave_out(scene: &mut Scene, drawn: &mut [Drawn], errors: &[PlanError]) -> bool {
+fn leave_out(scene: &mut Scene, drawn: &mut [Operation], errors: &[PlanError]) -> bool {
     let mut refused: Vec<usize> = errors.iter().filter_map(|error| error.draw).collect();
     refused.sort_unstable();
     refused.dedup();
@@ -486,23 +444,4 @@ fn leave_out(scene: &mut Scene, drawn: &mut [Drawn], errors: &[PlanError]) -> bo
         }
     }
     true
-}
-
-/// Returns a draw that fills a rectangle with one colour; its name is empty.
-fn rectangle(area: Rectangle, color: [u8; 4]) -> Draw {
-    let (left, right) = (area.x as f32, (area.x + area.width) as f32);
-    let (top, bottom) = (area.y as f32, (area.y + area.height) as f32);
-    let corner = |(x, y): (f32, f32)| Vertex {
-        position: [x, y, 0.0, 1.0],
-        diffuse: VertexColor::Bytes(color),
-        ..Vertex::default()
-    };
-    let corners = [(left, top), (right, top), (right, bottom), (left, bottom)].map(corner);
-    Draw {
-        name: String::new(),
-        topology: Topology::Quads,
-        indices: Arc::new([0, 1, 2, 3]),
-        vertices: corners.into_iter().collect(),
-        ..Draw::default()
-    }
 }

@@ -1,6 +1,7 @@
 //! An image of the console's memory, and how textures lie in it.
 
-use ninebit::state::TextureFormat;
+use ninebit::state::{SurfaceFormat, TextureFormat};
+use ninebit_files::texels;
 
 /// Bytes of memory that a console has; development kits have twice as much.
 pub const LARGEST_MEMORY: u64 = 128 << 20;
@@ -63,76 +64,63 @@ pub enum Layout {
     Pitch(u32),
 }
 
+impl Layout {
+    /// Returns the bytes that an image takes from its first to its last; `size` has columns, rows and layers, of texels of so many bytes.
+    fn extent(self, [width, height, depth]: [u32; 3], bytes: u64) -> u64 {
+        let [width, rows] = [width.into(), u64::from(height) * u64::from(depth)];
+        match self {
+            Layout::Swizzled => width * rows * bytes,
+            Layout::Pitch(pitch) => rows.saturating_sub(1) * u64::from(pitch) + width * bytes,
+        }
+    }
+
+    /// Returns where each texel lies, row after row, in bytes.
+    fn places(self, [width, height, depth]: [u32; 3], bytes: usize) -> impl Iterator<Item = usize> {
+        let logarithms = [width, height, depth].map(u32::ilog2);
+        let rows = (0..depth).flat_map(move |z| (0..height).map(move |y| (y, z)));
+        let texels = rows.flat_map(move |(y, z)| (0..width).map(move |x| [x, y, z]));
+        texels.map(move |[x, y, z]| match self {
+            Layout::Swizzled => swizzled([x, y, z], logarithms) as usize * bytes,
+            Layout::Pitch(pitch) => (z * height + y) as usize * pitch as usize + x as usize * bytes,
+        })
+    }
+}
+
 /// Returns the words of an image row after row, each texel or part of a block as [`Texels::words`](ninebit::state::Texels::words) has it; `None` if
 /// memory does not hold it whole. `size` has columns, rows and layers.
-pub fn words(
-    memory: &Memory,
-    address: u64,
-    format: TextureFormat,
-    [width, height, depth]: [u32; 3],
-    layout: Layout,
-) -> Option<Vec<u32>> {
-    let bytes = u64::from(format.bytes());
+pub fn words(memory: &Memory, address: u64, format: TextureFormat, size: [u32; 3], layout: Layout) -> Option<Vec<u32>> {
+    let bytes = format.bytes() as usize;
     if format.is_compressed() {
-        let blocks = u64::from(width.div_ceil(4)) * u64::from(height.div_ceil(4)) * u64::from(depth);
-        let bytes = memory.slice(address, blocks * bytes)?;
-        return Some(
-            bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect(),
-        );
+        let [width, height, depth] = size.map(u64::from);
+        let blocks = width.div_ceil(4) * height.div_ceil(4) * depth;
+        return Some(texels::from_bytes(memory.slice(address, blocks * bytes as u64)?, format));
     }
-    let texels = u64::from(width) * u64::from(height) * u64::from(depth);
-    let extent = match layout {
-        Layout::Swizzled => texels * bytes,
-        Layout::Pitch(pitch) => {
-            (u64::from(height) * u64::from(depth)).checked_sub(1)? * u64::from(pitch) + u64::from(width) * bytes
-        }
-    };
-    let image = memory.slice(address, extent)?;
-    let logarithms = [width, height, depth].map(u32::ilog2);
-    let mut words = Vec::with_capacity(texels as usize);
-    for z in 0..depth {
-        for y in 0..height {
-            for x in 0..width {
-                let at = match layout {
-                    Layout::Swizzled => swizzled([x, y, z], logarithms) * bytes,
-                    Layout::Pitch(pitch) => u64::from(z * height + y) * u64::from(pitch) + u64::from(x) * bytes,
-                } as usize;
-                words.push(
-                    image[at..at + bytes as usize].iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte)),
-                );
-            }
-        }
-    }
-    Some(words)
+    let image = memory.slice(address, layout.extent(size, bytes as u64))?;
+    let rows: Vec<u8> = layout.places(size, bytes).flat_map(|at| &image[at..at + bytes]).copied().collect();
+    Some(texels::from_bytes(&rows, format))
 }
 
 /// Returns the bytes of an image as [`words`] reads them, the reverse.
-pub fn bytes(words: &[u32], format: TextureFormat, [width, height, depth]: [u32; 3], layout: Layout) -> Vec<u8> {
+pub fn bytes(words: &[u32], format: TextureFormat, size: [u32; 3], layout: Layout) -> Vec<u8> {
+    let rows = texels::to_bytes(words, format);
     if format.is_compressed() {
-        return words.iter().flat_map(|word| word.to_le_bytes()).collect();
+        return rows;
     }
     let bytes = format.bytes() as usize;
-    let extent = match layout {
-        Layout::Swizzled => width as usize * height as usize * depth as usize * bytes,
-        Layout::Pitch(pitch) => height as usize * depth as usize * pitch as usize,
-    };
-    let mut image = vec![0; extent];
-    let logarithms = [width, height, depth].map(u32::ilog2);
-    let mut words = words.iter();
-    for z in 0..depth {
-        for y in 0..height {
-            for x in 0..width {
-                let at = match layout {
-                    Layout::Swizzled => swizzled([x, y, z], logarithms) as usize * bytes,
-                    Layout::Pitch(pitch) => (z * height + y) as usize * pitch as usize + x as usize * bytes,
-                };
-                if let Some(word) = words.next() {
-                    image[at..at + bytes].copy_from_slice(&word.to_le_bytes()[..bytes]);
-                }
-            }
-        }
+    let mut image = vec![0; layout.extent(size, bytes as u64) as usize];
+    for (at, texel) in layout.places(size, bytes).zip(rows.chunks_exact(bytes)) {
+        image[at..at + bytes].copy_from_slice(texel);
     }
     image
+}
+
+/// Returns a format of textures that has the bits of a surface's words as they are, those that no channel uses included.
+pub(crate) fn raw(format: SurfaceFormat) -> TextureFormat {
+    match format.bytes() {
+        4 => TextureFormat::A8R8G8B8,
+        2 => TextureFormat::R5G6B5,
+        _ => TextureFormat::L8,
+    }
 }
 
 #[cfg(test)]
@@ -152,6 +140,15 @@ mod tests {
             places.sort_unstable();
             assert!(places.iter().copied().eq(0..u64::from(w * h * d)), "{logarithms:?}");
         }
+    }
+
+    #[test]
+    fn depths_stand_above_the_stencil_in_memory() {
+        let memory = Memory::new(0x1234_56ab_u32.to_le_bytes().to_vec());
+        let read = words(&memory, 0, TextureFormat::Z24S8, [1, 1, 1], Layout::Swizzled).unwrap();
+        assert_eq!(read[0] & 0xff_ffff, 0x12_3456);
+        let read = words(&memory, 0, TextureFormat::X8R8G8B8, [1, 1, 1], Layout::Pitch(4)).unwrap();
+        assert_eq!(read, [0x34_56ab]);
     }
 
     #[test]

@@ -7,13 +7,9 @@ use std::mem;
 
 use crate::class::{self, METHOD_BYTES, Treatment};
 use crate::log::{Event, Write};
-
-/// Slots of a vertex program.
-pub const PROGRAM_SLOTS: usize = 136;
-/// Constants of a vertex program.
-pub const PROGRAM_CONSTANTS: usize = 192;
-/// Vertex attributes.
-pub const ATTRIBUTES: usize = 16;
+use crate::vertex::formats::normalized;
+use crate::vertex::microcode::{CONSTANTS, SLOTS};
+use crate::vertex::{ATTRIBUTES, Attributes, DEFAULT};
 
 /// Constant that SET_VIEWPORT_SCALE sets; the one behind it is set by SET_VIEWPORT_OFFSET.
 const VIEWPORT_CONSTANTS: [(u32, usize); 2] = [(class::SET_VIEWPORT_SCALE, 58), (class::SET_VIEWPORT_OFFSET, 59)];
@@ -45,6 +41,31 @@ impl Words {
     }
 }
 
+/// Groups of four words that are sent one after the other, from a place that is said before.
+#[derive(Clone, Debug)]
+struct Upload {
+    words: Words,
+    /// The group that the next word belongs to.
+    next: Option<u32>,
+}
+
+impl Upload {
+    fn new(groups: usize) -> Upload {
+        Upload { words: Words::new(4 * groups), next: None }
+    }
+
+    /// Takes a word, whose method says which of the four it is; the fourth moves on to the next group. Returns whether it was said where it goes.
+    fn take(&mut self, method: u32, word: u32) -> bool {
+        let Some(group) = self.next else { return false };
+        let part = method / 4 % 4;
+        self.words.set((group as usize).saturating_mul(4).saturating_add(part as usize), word);
+        if part == 3 {
+            self.next = group.checked_add(1);
+        }
+        true
+    }
+}
+
 /// The vertices of a draw as the program sent them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Batch {
@@ -57,7 +78,7 @@ pub struct Batch {
     /// Indices into the vertex arrays.
     pub indices: Vec<u32>,
     /// The attributes of vertices that were sent one by one.
-    pub immediate: Vec<[[f32; 4]; ATTRIBUTES]>,
+    pub immediate: Vec<Attributes>,
     /// The edge flag of each of these.
     pub edge_flags: Vec<bool>,
     /// Words that the log does not have, by method.
@@ -81,13 +102,11 @@ pub enum Action {
 #[derive(Clone, Debug)]
 pub struct State {
     words: Words,
-    program: Words,
-    constants: Words,
+    program: Upload,
+    constants: Upload,
     /// The current attributes, and which of them are known.
-    pub attributes: [[f32; 4]; ATTRIBUTES],
+    pub attributes: Attributes,
     known_attributes: u16,
-    program_load: Option<u32>,
-    constant_load: Option<u32>,
     batch: Option<Box<Batch>>,
     /// Whether a word of the program came before it was said where it goes.
     pub lost_program: bool,
@@ -97,12 +116,10 @@ impl Default for State {
     fn default() -> State {
         State {
             words: Words::new((METHOD_BYTES / 4) as usize),
-            program: Words::new(4 * PROGRAM_SLOTS),
-            constants: Words::new(4 * PROGRAM_CONSTANTS),
-            attributes: [[0.0, 0.0, 0.0, 1.0]; ATTRIBUTES],
+            program: Upload::new(SLOTS),
+            constants: Upload::new(CONSTANTS),
+            attributes: [DEFAULT; ATTRIBUTES],
             known_attributes: 0,
-            program_load: None,
-            constant_load: None,
             batch: None,
             lost_program: false,
         }
@@ -117,12 +134,12 @@ impl State {
 
     /// Returns a word of the vertex program.
     pub fn program(&self, slot: usize, word: usize) -> Option<u32> {
-        self.program.get(4 * slot + word)
+        self.program.words.get(4 * slot + word)
     }
 
     /// Returns a constant of the vertex program.
     pub fn constant(&self, index: usize) -> Option<[f32; 4]> {
-        let word = |n| self.constants.get(4 * index + n).map(f32::from_bits);
+        let word = |n| self.constants.words.get(4 * index + n).map(f32::from_bits);
         Some([word(0)?, word(1)?, word(2)?, word(3)?])
     }
 
@@ -169,49 +186,23 @@ impl State {
         match place.map(|place| place.method.treatment) {
             Some(Treatment::Draw) => return self.draw(line, method, word),
             Some(Treatment::Flip) => return Some(Action::Flip),
-            Some(Treatment::Program) => self.upload(method, word),
-            Some(Treatment::Constant) => self.load_constant(method, word),
+            Some(Treatment::Program) => self.lost_program |= !self.program.take(method, word),
+            Some(Treatment::Constant) => self.lost_program |= !self.constants.take(method, word),
             Some(Treatment::Vertex) => self.vertex(method, word),
             _ => {}
         }
         self.words.set(method as usize / 4, word);
         match method {
-            class::SET_TRANSFORM_PROGRAM_LOAD => self.program_load = Some(word),
-            class::SET_TRANSFORM_CONSTANT_LOAD => self.constant_load = Some(word),
+            class::SET_TRANSFORM_PROGRAM_LOAD => self.program.next = Some(word),
+            class::SET_TRANSFORM_CONSTANT_LOAD => self.constants.next = Some(word),
             _ => {}
         }
         for (first, constant) in VIEWPORT_CONSTANTS {
             if (first..first + 16).contains(&method) {
-                self.constants.set(4 * constant + ((method - first) / 4) as usize, word);
+                self.constants.words.set(4 * constant + ((method - first) / 4) as usize, word);
             }
         }
         None
-    }
-
-    /// Takes a word of the vertex program. Each fourth moves on to the next slot.
-    fn upload(&mut self, method: u32, word: u32) {
-        let Some(slot) = self.program_load else {
-            self.lost_program = true;
-            return;
-        };
-        let part = method / 4 % 4;
-        self.program.set((slot as usize).saturating_mul(4).saturating_add(part as usize), word);
-        if part == 3 {
-            self.program_load = slot.checked_add(1);
-        }
-    }
-
-    /// Takes a word of a constant. Each fourth moves on to the next constant.
-    fn load_constant(&mut self, method: u32, word: u32) {
-        let Some(index) = self.constant_load else {
-            self.lost_program = true;
-            return;
-        };
-        let part = method / 4 % 4;
-        self.constants.set((index as usize).saturating_mul(4).saturating_add(part as usize), word);
-        if part == 3 {
-            self.constant_load = index.checked_add(1);
-        }
     }
 
     fn draw(&mut self, line: u64, method: u32, word: u32) -> Option<Action> {
@@ -284,7 +275,6 @@ enum Kind {
 impl Kind {
     #[allow(clippy::float_arithmetic, reason = "attributes are binary32")]
     fn put(self, value: &mut [f32; 4], at: usize, word: u32) {
-        let absent = [0.0, 0.0, 0.0, 1.0];
         let halves = [word as u16 as i16, (word >> 16) as i16];
         let count = match self {
             Kind::Float(count) => {
@@ -296,8 +286,7 @@ impl Kind {
                 count
             }
             Kind::Signed(count) => {
-                // As the vertex arrays' S1 (docs/import.md).
-                value[2 * at..2 * at + 2].copy_from_slice(&halves.map(|half| (f32::from(half) / 32767.0).max(-1.0)));
+                value[2 * at..2 * at + 2].copy_from_slice(&halves.map(normalized));
                 count
             }
             Kind::Bytes => {
@@ -305,7 +294,7 @@ impl Kind {
                 4
             }
         };
-        value[count..].copy_from_slice(&absent[count..]);
+        value[count..].copy_from_slice(&DEFAULT[count..]);
     }
 }
 
@@ -436,6 +425,6 @@ mod tests {
         assert_eq!([0, 1, 2, 3].map(|n| state.program(135, n)), [4, 5, 6, 7].map(Some));
         assert_eq!((state.program(133, 0), state.program(136, 0)), (None, None));
         assert_eq!((state.constant(0x74), state.constant(0x75)), (Some([1.0, 0.0, 0.0, 0.0]), None));
-        assert_eq!(state.constants.get(4 * 59), Some(0x3f00_0000));
+        assert_eq!(state.constants.words.get(4 * 59), Some(0x3f00_0000));
     }
 }

@@ -6,22 +6,22 @@ use ninebit::state::*;
 
 /// A rectangle of one colour, depth and stencil that passes every test.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Clear {
+pub struct Clear {
     /// Where.
-    pub(crate) area: Rectangle,
+    pub area: Rectangle,
     /// What the colours become; `None` if they stay.
-    pub(crate) color: Option<[u8; 4]>,
+    pub color: Option<[u8; 4]>,
     /// Which channels of them, if there is a colour.
-    pub(crate) color_mask: [bool; 4],
+    pub color_mask: [bool; 4],
     /// What the depths become, with its unit; `None` if they stay.
-    pub(crate) depth: Option<(VertexDepths, f32)>,
+    pub depth: Option<(VertexDepths, f32)>,
     /// What the stencils become; `None` if they stay.
-    pub(crate) stencil: Option<u8>,
+    pub stencil: Option<u8>,
 }
 
 impl Clear {
     /// Returns the clear as a draw.
-    pub(crate) fn draw(&self, name: String, target: usize) -> Draw {
+    pub fn draw(&self, name: String, target: usize) -> Draw {
         let mut draw = Draw { name, target, ..Draw::default() };
         draw.color_mask = if self.color.is_some() { self.color_mask } else { [false; 4] };
         draw.depth_test = self

@@ -5,7 +5,7 @@
 
 pub mod assets;
 pub mod change;
-mod clear;
+pub mod clear;
 pub mod data;
 pub mod dds;
 pub mod diff;

@@ -1,5 +1,6 @@
 //! The command `ninebit import`: logs of real programs become scenes.
 
+use super::scene::write_scene;
 use super::*;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -7,10 +8,10 @@ use std::fmt::Write as _;
 use ninebit::limits::{LOG, MEMORY_IMAGE};
 use ninebit::plan::PlanOptions;
 use ninebit_files::output::write_below;
-use ninebit_files::pending::{PendingFolder, make_folder};
+use ninebit_files::pending::PendingFolder;
 use ninebit_files::read::{self, Kind, ReadError};
 use ninebit_methods::class::{self, KELVIN, Treatment};
-use ninebit_methods::frame::{Drawn, Frame};
+use ninebit_methods::frame::Frame;
 use ninebit_methods::import::{Importer, Options, Part, Summary, assume};
 use ninebit_methods::log::{Fault, Reader};
 use ninebit_methods::memory::Memory;
@@ -225,7 +226,7 @@ impl Out<'_> {
     }
 
     fn write(&mut self, frame: &Frame) -> Result<(), Failure> {
-        let Some(folder) = self.folder else { return Ok(()) };
+        let Some(output) = self.folder else { return Ok(()) };
         if frame.scene.targets.is_empty() {
             return Ok(());
         }
@@ -240,7 +241,8 @@ impl Out<'_> {
                 None => head.extend(gaps.map(|gap| format!("{}: {gap}", drawn.name))),
             }
         }
-        let options = WriteOptions { head, comments, register_words: true, ..WriteOptions::default() };
+        let folder = stem.clone();
+        let options = WriteOptions { head, comments, folder, register_words: true, ..WriteOptions::default() };
         let files = write::scene(&frame.scene, &options).map_err(|error| {
             let help = "import one of its draws with `--draw`";
             Failure {
@@ -248,18 +250,7 @@ impl Out<'_> {
                 ..Failure::invalid("NB1606", format!("frame {}: {error}", frame.number), help)
             }
         })?;
-        let mut text = files.text;
-        for (name, bytes) in &files.files {
-            // Files of several frames stand side by side.
-            let own = format!("{stem}/{name}");
-            text = text.replace(&format!("\"{name}\""), &format!("\"{own}\""));
-            let path = folder.path().join(&own);
-            if let Some(parent) = path.parent() {
-                make_folder(parent)?;
-            }
-            write_below(&path, bytes)?;
-        }
-        write_below(&folder.path().join(format!("{stem}.ron")), text.as_bytes())?;
+        write_scene(output.path(), &stem, &files)?;
         self.written.push((format!("{stem}.ron"), frame.is_complete()));
         Ok(())
     }
@@ -267,22 +258,17 @@ impl Out<'_> {
 
 /// Prints what each draw of a frame does.
 fn explain_frame(out: &mut String, frame: &Frame) {
+    let plan = Plan::compile(&frame.scene, &PlanOptions::default()).ok();
+    let explained = plan.as_ref().map(|plan| (plan, explain(&frame.scene, plan)));
     // Writing to a string cannot fail.
     let _ = writeln!(out, "frame {}", frame.number);
-    let gaps = |out: &mut String, drawn: &Drawn| {
+    for drawn in &frame.drawn {
         let _ = writeln!(out, "\n{}", drawn.name);
         for gap in &drawn.gaps {
             let _ = writeln!(out, "  incomplete: {gap}");
         }
-    };
-    for drawn in &frame.drawn {
-        gaps(out, drawn);
-        let Some(index) = drawn.draw else { continue };
-        let mut scene = frame.scene.clone();
-        let draw = scene.draws.swap_remove(index);
-        scene.draws = vec![draw];
-        let Ok(plan) = Plan::compile(&scene, &PlanOptions::default()) else { continue };
-        let text = explanation_text(&plan, &explain(&scene, &plan), None);
+        let (Some(index), Some((plan, draws))) = (drawn.draw, &explained) else { continue };
+        let text = explanation_text(plan, &draws[index..=index], None);
         for line in text.lines().skip_while(|line| !line.starts_with("draw")).skip(1) {
             let _ = writeln!(out, "{line}");
         }

@@ -9,9 +9,11 @@ use ninebit::plan::Plan;
 use ninebit::shown;
 use ninebit::state::{Draw, Policies, Scene};
 use ninebit_files::catch_panic::catch_panic;
+use ninebit_files::output::{OutputError, write_below};
 use ninebit_scene::assets::{Assets, Folder};
 use ninebit_scene::change::Change;
 use ninebit_scene::truth::Truth;
+use ninebit_scene::write::SceneFiles;
 use ninebit_scene::{self as scene, Loaded, SceneError};
 use serde::Serialize;
 
@@ -25,6 +27,16 @@ pub(crate) struct SceneArguments {
     pub(crate) scene: PathBuf,
     #[command(flatten)]
     state: StateArguments,
+}
+
+/// Writes a scene with its files into a folder, and returns the path of its text, `NAME.ron`.
+pub(crate) fn write_scene(folder: &Path, name: &str, scene: &SceneFiles) -> Result<PathBuf, OutputError> {
+    for (file, bytes) in &scene.files {
+        write_below(&folder.join(file), bytes)?;
+    }
+    let path = folder.join(format!("{name}.ron"));
+    write_below(&path, scene.text.as_bytes())?;
+    Ok(path)
 }
 
 /// Arguments that change what is drawn.

@@ -6,7 +6,7 @@ use ninebit::state::{
     PolygonStipple, ProvokingVertex, Rectangle, ShadeModel, StencilOperation, StencilTest, Topology, VertexDepths,
     WindowClip,
 };
-use ninebit_program::registers::raster;
+use ninebit_program::registers::{color_of, raster};
 
 use super::view::View;
 use crate::class;
@@ -66,12 +66,6 @@ fn compare(view: &mut View<'_>, method: u32) -> CompareFunction {
 /// Returns choices with their values.
 fn with_values<T: Copy>(all: &[T], value: impl Fn(T) -> u32) -> Vec<(T, u32)> {
     all.iter().map(|choice| (*choice, value(*choice))).collect()
-}
-
-/// Reads a colour A8R8G8B8.
-pub(crate) fn argb(word: u32) -> [u8; 4] {
-    let [b, g, r, a] = word.to_le_bytes();
-    [r, g, b, a]
 }
 
 /// Fills in the state that surrounds the vertices. `depth` is the format of the depth buffer. Returns whether anything can be left of the draw.
@@ -214,7 +208,7 @@ fn operations(view: &mut View<'_>, draw: &mut Draw) {
             matches!(factor, ConstantAlpha | ConstantColor | OneMinusConstantAlpha | OneMinusConstantColor)
         };
         if constant(source) || constant(destination) {
-            draw.blend_constant = argb(view.get(class::SET_BLEND_COLOR));
+            draw.blend_constant = color_of(view.get(class::SET_BLEND_COLOR));
         }
     }
     let mask = view.get(class::SET_COLOR_MASK);

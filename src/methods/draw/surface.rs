@@ -68,24 +68,3 @@ impl Surface {
         self.swizzled.unwrap_or([self.clip.x + self.clip.width, self.clip.y + self.clip.height])
     }
 }
-
-/// Returns the channels R, G, B, A that a clear of colours stores for a word, and whether it stores just that word.
-pub(crate) fn clear_color(format: SurfaceFormat, word: u32) -> ([u8; 4], bool) {
-    let five = |bits: u32| (bits << 3 | bits >> 2) as u8;
-    let six = |bits: u32| (bits << 2 | bits >> 4) as u8;
-    let [b, g, r, a] = word.to_le_bytes();
-    match format {
-        SurfaceFormat::A8R8G8B8 => ([r, g, b, a], true),
-        SurfaceFormat::X8R8G8B8Z => ([r, g, b, a], a == 0),
-        SurfaceFormat::X8R8G8B8O => ([r, g, b, a], a == 255),
-        SurfaceFormat::X1A7R8G8B8Z => ([r, g, b, a << 1 | a >> 6 & 1], a < 128),
-        SurfaceFormat::X1A7R8G8B8O => ([r, g, b, a << 1 | a >> 6 & 1], a >= 128),
-        SurfaceFormat::R5G6B5 => ([five(word >> 11 & 31), six(word >> 5 & 63), five(word & 31), 255], true),
-        SurfaceFormat::X1R5G5B5Z | SurfaceFormat::X1R5G5B5O => {
-            let color = [five(word >> 10 & 31), five(word >> 5 & 31), five(word & 31), 255];
-            (color, (word >> 15 & 1 != 0) == (format == SurfaceFormat::X1R5G5B5O))
-        }
-        SurfaceFormat::B8 => ([0, 0, b, 255], true),
-        SurfaceFormat::G8B8 => ([0, g, b, 255], true),
-    }
-}

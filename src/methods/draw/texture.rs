@@ -7,7 +7,8 @@ use ninebit::state::{
     ShadowComparison, ShadowReference, Texels, TextureFormat, TextureKind, TextureUnit,
 };
 
-use super::raster::argb;
+use ninebit_program::registers::color_of;
+
 use super::view::View;
 use crate::class;
 use crate::gap::Gap;
@@ -302,14 +303,14 @@ pub(crate) fn unit(view: &mut View<'_>, unit: usize, image: &Image, projects: bo
     state.lod_bias = (filter << 19) as i32 >> 19;
     state.signed = [29, 30, 31, 28].map(|bit| filter >> bit & 1 != 0);
     if [state.address_s, state.address_t, state.address_r].contains(&AddressMode::ClampToBorder) && !image.border {
-        state.border_color = argb(view.get(method(class::SET_TEXTURE_BORDER_COLOR)));
+        state.border_color = color_of(view.get(method(class::SET_TEXTURE_BORDER_COLOR)));
     }
     let anisotropy = 1 << (control >> 4 & 3);
     state.anisotropy = anisotropy;
     let mode =
         [None, Some(ColorKeyMode::Alpha), Some(ColorKeyMode::Color), Some(ColorKeyMode::Texel)][(control & 3) as usize];
     if let Some(mode) = mode {
-        let color = argb(view.get(class::SET_COLOR_KEY_COLOR + 4 * unit as u32));
+        let color = color_of(view.get(class::SET_COLOR_KEY_COLOR + 4 * unit as u32));
         state.color_key = Some(ColorKey { color, mode });
     }
     if image.format.depth().is_some() {

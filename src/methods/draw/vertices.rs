@@ -14,10 +14,10 @@ use super::view::View;
 use crate::class;
 use crate::gap::Gap;
 use crate::memory::Memory;
-use crate::state::{Batch, PROGRAM_CONSTANTS, PROGRAM_SLOTS, State};
+use crate::state::{Batch, State};
 use crate::vertex::fixed::FixedFunction;
 use crate::vertex::formats::ArrayFormat;
-use crate::vertex::microcode::{Constants, Program};
+use crate::vertex::microcode::{CONSTANTS, Constants, Program, SLOTS};
 use crate::vertex::{ATTRIBUTES, Attributes, DEFAULT, Outputs};
 
 /// Fills in the vertices of a draw; returns whether there are any.
@@ -129,7 +129,7 @@ fn program(view: &mut View<'_>) -> (Program, Constants) {
     let state: &State = view.state();
     let start = state.get(class::SET_TRANSFORM_PROGRAM_START);
     let slots: Vec<[u32; 4]> =
-        (0..PROGRAM_SLOTS).map(|slot| [0, 1, 2, 3].map(|word| state.program(slot, word).unwrap_or(0))).collect();
+        (0..SLOTS).map(|slot| [0, 1, 2, 3].map(|word| state.program(slot, word).unwrap_or(0))).collect();
     let start = start.unwrap_or(0) as usize;
     let program = Program::decode(&slots, start);
     let constants: Constants = std::array::from_fn(|n| state.constant(n).unwrap_or([0.0; 4]));
@@ -138,12 +138,12 @@ fn program(view: &mut View<'_>) -> (Program, Constants) {
     let known_slot = |slot: usize| (0..4).all(|word| view.state().program(slot, word).is_some());
     let slots = ranges(used.filter(|slot| !known_slot(*slot)));
     let (read, by_address) = program.constants();
-    let missing = (0..PROGRAM_CONSTANTS).filter(|n| read[*n] && view.state().constant(*n).is_none());
+    let missing = (0..CONSTANTS).filter(|n| read[*n] && view.state().constant(*n).is_none());
     let constants_missing = ranges(missing);
     if !program.is_complete() {
         view.note(Gap::NotModelled("a vertex program without an end".into()));
     }
-    if by_address && (0..PROGRAM_CONSTANTS).any(|n| view.state().constant(n).is_none()) {
+    if by_address && (0..CONSTANTS).any(|n| view.state().constant(n).is_none()) {
         view.note(Gap::NotModelled("constants read by an address, some of which were never set".into()));
     }
     for (first, last) in slots {

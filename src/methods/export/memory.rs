@@ -4,16 +4,16 @@ use ninebit::state::{CUBE_FACES, Palette, Scene, Texels, Texture, TextureImage, 
 
 use super::{ExportError, refuse};
 use crate::draw::texture::{BORDERED_SIDE, FACE_BYTES};
-use crate::memory::{LARGEST_MEMORY, Layout, bytes};
+use crate::memory::{LARGEST_MEMORY, Layout, bytes, raw};
 
 /// Where the first thing lies.
 const FIRST: u32 = 0x0010_0000;
 /// Surfaces and textures begin at multiples of this.
 const ALIGNMENT: u32 = 256;
 
-/// What lies where.
+/// Where surfaces, textures and palettes lie in memory.
 #[derive(Debug)]
-pub(super) struct Placed {
+pub(super) struct MemoryMap {
     /// The image of memory.
     pub bytes: Vec<u8>,
     /// Addresses of the targets' colours.
@@ -33,10 +33,10 @@ pub(super) fn pitch(width: u32, bytes: u32) -> u32 {
     (width * bytes).next_multiple_of(64)
 }
 
-impl Placed {
-    pub(super) fn new(scene: &Scene) -> Result<Placed, ExportError> {
+impl MemoryMap {
+    pub(super) fn new(scene: &Scene) -> Result<MemoryMap, ExportError> {
         let count = scene.targets.len();
-        let mut placed = Placed {
+        let mut placed = MemoryMap {
             bytes: Vec::new(),
             surfaces: Vec::with_capacity(count),
             depths: Vec::with_capacity(count),
@@ -59,7 +59,7 @@ impl Placed {
                 } else {
                     Layout::Pitch(pitch(target.width, target.format.bytes()))
                 };
-                let contents = bytes(words, target.format.texture_format(), [target.width, target.height, 1], layout);
+                let contents = bytes(words, raw(target.format), [target.width, target.height, 1], layout);
                 image[..contents.len()].copy_from_slice(&contents);
             }
             let at = placed.put(&image)?;

@@ -14,7 +14,7 @@ use ninebit::state::{Profile, Scene};
 pub use print::{console_program, push_buffer, trace};
 
 use crate::class;
-use crate::export::memory::Placed;
+use crate::export::memory::MemoryMap;
 use crate::vertex::{attribute, microcode};
 
 /// A scene as methods of the 3D class.
@@ -87,10 +87,10 @@ pub fn export(scene: &Scene, plan: &Plan) -> Result<Methods, ExportError> {
         return refuse("the scene is of GeForce 256, whose class has other methods: set `profile: Nv2a`");
     }
     let mut words = Words::default();
-    let placed = Placed::new(scene)?;
+    let placed = MemoryMap::new(scene)?;
     program(&mut words);
     for (index, target) in scene.targets.iter().enumerate() {
-        state::clear(&mut words, &placed, index, target)?;
+        state::clear(&mut words, &placed, index, target);
     }
     for (index, draw) in scene.draws.iter().enumerate() {
         let of_draw = |error: ExportError| ExportError { draw: Some(index), ..error };

@@ -1,12 +1,13 @@
 //! Words of the rasteriser, of fog and of the raster operations.
 
+use ninebit::rop;
 use ninebit::state::{
     Cull, DepthFormat, DepthRange, DepthTest, Draw, Fog, FrontFace, LineRasterization, PolygonStipple, ProvokingVertex,
-    Rectangle, Scene, ShadeModel, StencilTest, SurfaceFormat, Target,
+    Rectangle, Scene, ShadeModel, StencilTest, Target,
 };
-use ninebit_program::registers::raster;
+use ninebit_program::registers::{color_word, raster};
 
-use super::memory::{Placed, pitch};
+use super::memory::{MemoryMap, pitch};
 use super::{ExportError, Words, refuse};
 use crate::class;
 use crate::draw::raster::{FOG_MODES, POLYGON_MODES, STENCIL_OPERATIONS};
@@ -16,17 +17,13 @@ pub(super) fn code<T: PartialEq>(all: &[(T, u32)], choice: T) -> u32 {
     all.iter().find(|(other, _)| *other == choice).map_or(0, |(_, code)| *code)
 }
 
-fn argb([r, g, b, a]: [u8; 4]) -> u32 {
-    u32::from_le_bytes([b, g, r, a])
-}
-
 /// Returns the bits of SET_CONTROL0 that say how depths are stored.
 fn float_bit(target: &Target) -> u32 {
     u32::from(target.depth.is_some_and(|depth| depth.format.is_float())) << 12
 }
 
 /// Binds a target.
-fn bind(words: &mut Words, placed: &Placed, index: usize, target: &Target) {
+fn bind(words: &mut Words, placed: &MemoryMap, index: usize, target: &Target) {
     let depth = target.depth.map_or(DepthFormat::Z24S8, |depth| depth.format);
     let layout = if placed.swizzled[index] { 2 } else { 1 };
     let sides = if placed.swizzled[index] { target.width.ilog2() << 16 | target.height.ilog2() << 24 } else { 0 };
@@ -39,7 +36,7 @@ fn bind(words: &mut Words, placed: &Placed, index: usize, target: &Target) {
 }
 
 /// Clears a target to what it holds first.
-pub(super) fn clear(words: &mut Words, placed: &Placed, index: usize, target: &Target) -> Result<(), ExportError> {
+pub(super) fn clear(words: &mut Words, placed: &MemoryMap, index: usize, target: &Target) {
     bind(words, placed, index, target);
     words.set(class::SET_SURFACE_CLIP_HORIZONTAL, target.width << 16);
     words.set(class::SET_SURFACE_CLIP_VERTICAL, target.height << 16);
@@ -48,7 +45,7 @@ pub(super) fn clear(words: &mut Words, placed: &Placed, index: usize, target: &T
     words.set(class::SET_CONTROL0, 1 << 20 | 1 | float_bit(target));
     let mut parts = 0;
     if target.contents.is_none() {
-        words.set(class::SET_COLOR_CLEAR_VALUE, clear_word(target.format, target.clear_color));
+        words.set(class::SET_COLOR_CLEAR_VALUE, rop::surface::pack(target.format, target.clear_color));
         parts |= 0xf0;
     }
     if let Some(depth) = target.depth {
@@ -60,37 +57,13 @@ pub(super) fn clear(words: &mut Words, placed: &Placed, index: usize, target: &T
     if parts != 0 {
         words.send(class::CLEAR_SURFACE, parts);
     }
-    Ok(())
-}
-
-/// Returns the word that a clear of a format stores for R, G, B, A.
-fn clear_word(format: SurfaceFormat, [r, g, b, a]: [u8; 4]) -> u32 {
-    let [r, g, b, a] = [r, g, b, a].map(u32::from);
-    match format {
-        SurfaceFormat::A8R8G8B8 => a << 24 | r << 16 | g << 8 | b,
-        SurfaceFormat::X8R8G8B8Z => r << 16 | g << 8 | b,
-        SurfaceFormat::X8R8G8B8O => 0xff00_0000 | r << 16 | g << 8 | b,
-        SurfaceFormat::X1A7R8G8B8Z => a >> 1 << 24 | r << 16 | g << 8 | b,
-        SurfaceFormat::X1A7R8G8B8O => 0x8000_0000 | a >> 1 << 24 | r << 16 | g << 8 | b,
-        SurfaceFormat::R5G6B5 => r >> 3 << 11 | g >> 2 << 5 | b >> 3,
-        SurfaceFormat::X1R5G5B5Z => r >> 3 << 10 | g >> 3 << 5 | b >> 3,
-        SurfaceFormat::X1R5G5B5O => 0x8000 | r >> 3 << 10 | g >> 3 << 5 | b >> 3,
-        SurfaceFormat::B8 => b,
-        SurfaceFormat::G8B8 => g << 8 | b,
-    }
 }
 
 /// Binds the target of a draw, and returns the pixels that the surface clip leaves; `None` if there are none.
-pub(super) fn surface(words: &mut Words, scene: &Scene, placed: &Placed, draw: &Draw) -> Option<Rectangle> {
+pub(super) fn surface(words: &mut Words, scene: &Scene, placed: &MemoryMap, draw: &Draw) -> Option<Rectangle> {
     let target = scene.targets.get(draw.target)?;
     let whole = Rectangle { x: 0, y: 0, width: target.width, height: target.height };
-    let common = |one: Rectangle, other: Rectangle| {
-        let axis = |a: u32, b: u32, c: u32, d: u32| (a.max(c), (a + b).min(c.saturating_add(d)));
-        let ((x, right), (y, bottom)) =
-            (axis(one.x, one.width, other.x, other.width), axis(one.y, one.height, other.y, other.height));
-        Rectangle { x, y, width: right.saturating_sub(x), height: bottom.saturating_sub(y) }
-    };
-    let clip = [target.clip, draw.scissor].into_iter().flatten().fold(whole, common);
+    let clip = [target.clip, draw.scissor].into_iter().flatten().fold(whole, Rectangle::intersection);
     if clip.width == 0 || clip.height == 0 {
         return None;
     }
@@ -119,7 +92,7 @@ pub(super) fn draw(words: &mut Words, scene: &Scene, draw: &Draw) -> Result<(), 
         words.set(class::SET_BLEND_FUNC_SFACTOR, raster::blend_factor(blend.source));
         words.set(class::SET_BLEND_FUNC_DFACTOR, raster::blend_factor(blend.destination));
         words.set(class::SET_BLEND_EQUATION, raster::blend_equation(blend.equation));
-        words.set(class::SET_BLEND_COLOR, argb(draw.blend_constant));
+        words.set(class::SET_BLEND_COLOR, color_word(draw.blend_constant));
     }
     let mask = (0..4).map(|n| raster::COLOR_MASK[n].put(draw.color_mask[n].into())).sum();
     words.set(class::SET_COLOR_MASK, mask);

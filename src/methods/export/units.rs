@@ -5,9 +5,9 @@ use ninebit::state::{
     ColorKeyMode, Draw, Filter, Profile, Scene, ShaderOperation, ShadowReference, TEXTURE_UNITS, Texture, TextureImage,
     TextureKind, TextureUnit,
 };
-use ninebit_program::registers::encode;
+use ninebit_program::registers::{color_word, encode};
 
-use super::memory::{Placed, pitch};
+use super::memory::{MemoryMap, pitch};
 use super::state::code;
 use super::{ExportError, Words, refuse};
 use crate::class;
@@ -15,7 +15,7 @@ use crate::draw::shader::{CUBE, DOT_MAPPINGS, THREE, TWO};
 use crate::draw::texture::{ADDRESS_MODES, FORMATS, MIN_FILTERS, SHADOW_FUNCTIONS, of_unit};
 
 /// Sets the units, the shader and the combiners of a draw.
-pub(super) fn units(words: &mut Words, scene: &Scene, placed: &Placed, draw: &Draw) -> Result<(), ExportError> {
+pub(super) fn units(words: &mut Words, scene: &Scene, placed: &MemoryMap, draw: &Draw) -> Result<(), ExportError> {
     let (mut programs, mut mappings, mut inputs, mut culls) = (0, 0, 0, 0);
     for index in 0..TEXTURE_UNITS {
         let stage = &draw.texture_shader[index];
@@ -109,7 +109,7 @@ fn control(unit: &TextureUnit) -> u32 {
 fn unit(
     words: &mut Words,
     scene: &Scene,
-    placed: &Placed,
+    placed: &MemoryMap,
     (index, unit): (usize, &TextureUnit),
 ) -> Result<(), ExportError> {
     let texture = &scene.textures[unit.texture];
@@ -140,8 +140,7 @@ fn unit(
     let min = code(&MIN_FILTERS, (unit.min_filter, unit.mip_filter));
     let mag = if unit.mag_filter == Filter::Linear { 2 } else { 1 };
     set(class::SET_TEXTURE_FILTER, signs | mag << 24 | min << 16 | 1 << 13 | unit.lod_bias as u32 & 0x1fff);
-    let [red, green, blue, alpha] = unit.border_color;
-    set(class::SET_TEXTURE_BORDER_COLOR, u32::from_le_bytes([blue, green, red, alpha]));
+    set(class::SET_TEXTURE_BORDER_COLOR, color_word(unit.border_color));
     if let Some(palette) = unit.palette {
         let length = match scene.palettes[palette].entries.len() {
             256 => 0,
@@ -152,8 +151,7 @@ fn unit(
         set(class::SET_TEXTURE_PALETTE, placed.palettes[palette] | length << 2);
     }
     if let Some(key) = unit.color_key {
-        let [red, green, blue, alpha] = key.color;
-        words.set(class::SET_COLOR_KEY_COLOR + 4 * index as u32, u32::from_le_bytes([blue, green, red, alpha]));
+        words.set(class::SET_COLOR_KEY_COLOR + 4 * index as u32, color_word(key.color));
     }
     if let Some(shadow) = unit.shadow {
         words.set(class::SET_SHADOW_COMPARE_FUNC, code(&SHADOW_FUNCTIONS, shadow.function));

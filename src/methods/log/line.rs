@@ -1,6 +1,6 @@
 //! A line of a log.
 
-use super::event::Write;
+use super::event::{Event, Write};
 use crate::class::{KELVIN, SET_TRANSFORM_PROGRAM};
 
 /// The content of a line.
@@ -14,19 +14,8 @@ pub(super) enum Line {
     Unhandled(Write),
     /// Several of them.
     Writes(Vec<Write>),
-    /// Words that the log does not have.
-    Dropped {
-        /// Class of the object.
-        class: u32,
-        /// Number of the method in bytes.
-        method: u32,
-        /// Number of words, if it is known.
-        count: Option<u64>,
-    },
-    /// The end of a frame.
-    Flip,
-    /// The number of a dump of surfaces.
-    SurfaceDump(u64),
+    /// Any other event.
+    Event(Event),
     /// Words alone.
     Words(Vec<u32>),
     /// A line of no known form.
@@ -46,7 +35,7 @@ pub(super) fn line(text: &str) -> Line {
         return method(rest).unwrap_or(Line::Unknown);
     }
     if text.starts_with("nv2a_pgraph_flip_stall") || text.starts_with("Flip (stall)") {
-        return Line::Flip;
+        return Line::Event(Event::Flip);
     }
     if text.starts_with("nv2a_") || text.starts_with("pgraph method log") || text.starts_with("[PB]") {
         return Line::Nothing;
@@ -122,10 +111,10 @@ fn method(rest: &str) -> Option<Line> {
     };
     if kind == "_abbrev" {
         let count = rest.rsplit_once('*').and_then(|(_, count)| count.trim().parse().ok());
-        return Some(Line::Dropped { class, method, count });
+        return Some(Line::Event(Event::Dropped { class, method, count }));
     }
     if rest.contains("<NO_DATA>") {
-        return Some(Line::Dropped { class, method, count: Some(1) });
+        return Some(Line::Event(Event::Dropped { class, method, count: Some(1) }));
     }
     let write = Write { class, method, word: word(rest)? };
     match kind {
@@ -150,7 +139,7 @@ fn dump(comment: &str) -> Line {
         let (_, number) = rest.split_once("surface_dump=")?;
         number.split_whitespace().next()?.parse().ok()
     });
-    number.map_or(Line::Nothing, Line::SurfaceDump)
+    number.map_or(Line::Nothing, |number| Line::Event(Event::SurfaceDump(number)))
 }
 
 /// Reads what follows `nv2a:` in logs before traces: `pgraph method (0): 0x97 -> 0x1550 (0x3f800000)`.

@@ -95,9 +95,7 @@ impl Reader {
                 self.last = Some(Write { class: 0, ..write });
             }
             Line::Writes(writes) => writes.into_iter().for_each(|write| put(Event::Write(write))),
-            Line::Dropped { class, method, count } => put(Event::Dropped { class, method, count }),
-            Line::Flip => put(Event::Flip),
-            Line::SurfaceDump(number) => put(Event::SurfaceDump(number)),
+            Line::Event(event) => put(event),
             Line::Words(words) => {
                 let form = self.form.get_or_insert_with(|| {
                     let pairs = words.len() == 2 && words[0] < METHOD_BYTES && words[0] % 4 == 0;

@@ -10,7 +10,7 @@ use std::ops::Range;
 /// the other without further tests.
 pub fn windows(draw: &Draw, target: &Target) -> Vec<Rectangle> {
     let whole = Rectangle { x: 0, y: 0, width: target.width, height: target.height };
-    let bounds = [target.clip, draw.scissor].into_iter().flatten().fold(whole, common);
+    let bounds = [target.clip, draw.scissor].into_iter().flatten().fold(whole, Rectangle::intersection);
     if bounds.width == 0 || bounds.height == 0 {
         return Vec::new();
     }
@@ -59,17 +59,6 @@ fn columns(rectangle: &Rectangle) -> Range<u32> {
 
 fn rows(rectangle: &Rectangle) -> Range<u32> {
     rectangle.y..rectangle.y.saturating_add(rectangle.height)
-}
-
-/// Returns the pixels that two rectangles have in common. The first must end within 32 bits.
-fn common(one: Rectangle, other: Rectangle) -> Rectangle {
-    let axis = |a: Range<u32>, b: Range<u32>| {
-        let start = b.start.clamp(a.start, a.end);
-        (start, b.end.clamp(start, a.end) - start)
-    };
-    let (x, width) = axis(columns(&one), columns(&other));
-    let (y, height) = axis(rows(&one), rows(&other));
-    Rectangle { x, y, width, height }
 }
 
 #[cfg(test)]

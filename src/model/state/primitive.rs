@@ -301,3 +301,18 @@ pub struct Rectangle {
     /// Height in pixels.
     pub height: u32,
 }
+
+impl Rectangle {
+    /// Returns the pixels that two rectangles have in common. The first must end within 32 bits.
+    #[must_use]
+    pub fn intersection(self, other: Rectangle) -> Rectangle {
+        let axis = |a: u32, length: u32, b: u32, other: u32| {
+            let end = a + length;
+            let start = b.clamp(a, end);
+            (start, b.saturating_add(other).clamp(start, end) - start)
+        };
+        let (x, width) = axis(self.x, self.width, other.x, other.width);
+        let (y, height) = axis(self.y, self.height, other.y, other.height);
+        Rectangle { x, y, width, height }
+    }
+}

@@ -15,7 +15,7 @@ use ninebit::state::{Named, Profile, named};
 pub use code::{OPERATIONS, component, refusal, register_code, stored};
 pub use describe::{Description, describe};
 pub(crate) use program::word_of;
-pub use program::{decode, encode};
+pub use program::{color_of, color_word, decode, encode};
 pub use text::{Written, read};
 
 named! {

@@ -97,12 +97,13 @@ pub fn encode(combiners: &Combiners, chip: Profile) -> RegisterWords {
 }
 
 /// Decodes a constant colour A8R8G8B8 into R, G, B, A.
-fn color_of(word: u32) -> [u8; 4] {
+pub fn color_of(word: u32) -> [u8; 4] {
     let [b, g, r, a] = word.to_le_bytes();
     [r, g, b, a]
 }
 
-fn color_word([r, g, b, a]: [u8; 4]) -> u32 {
+/// Encodes a constant colour R, G, B, A as A8R8G8B8.
+pub fn color_word([r, g, b, a]: [u8; 4]) -> u32 {
     u32::from_le_bytes([b, g, r, a])
 }
 

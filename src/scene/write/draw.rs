@@ -243,10 +243,7 @@ pub(super) fn rectangle(area: &Rectangle) -> Fields {
 
 /// Returns the part of a rectangle that lies in a target.
 pub(super) fn within(area: &Rectangle, target: &Target) -> Rectangle {
-    let (x, y) = (area.x.min(target.width), area.y.min(target.height));
-    let width = area.x.saturating_add(area.width).min(target.width) - x;
-    let height = area.y.saturating_add(area.height).min(target.height) - y;
-    Rectangle { x, y, width, height }
+    Rectangle { x: 0, y: 0, width: target.width, height: target.height }.intersection(*area)
 }
 
 /// Returns the part of a window clip's rectangle that lies in the target. In place of nothing it is a pixel outside.

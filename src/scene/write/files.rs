@@ -21,19 +21,26 @@ impl Used {
 }
 
 /// The files beside a scene.
-#[derive(Default)]
 pub(super) struct Files {
+    /// The folder around theirs; empty if they stand beside the text.
+    around: String,
     contents: BTreeMap<String, Vec<u8>>,
 }
 
 impl Files {
+    pub(super) fn new(around: &str) -> Files {
+        let around = if around.is_empty() { String::new() } else { format!("{around}/") };
+        Files { around, contents: BTreeMap::new() }
+    }
+
     /// Adds a file of a folder, called like what it is of. Returns the name of an equal one, if there is one.
     pub(super) fn add(&mut self, folder: &str, of: &str, bytes: Vec<u8>) -> String {
         let plain =
             |c: char| if c.is_ascii_alphanumeric() || c == '-' || c == '_' { c.to_ascii_lowercase() } else { '-' };
         let stem: String = of.chars().take(60).map(plain).collect();
-        let names = std::iter::once(format!("{folder}/{stem}.bin"));
-        let mut names = names.chain((2..).map(|n: u64| format!("{folder}/{stem}-{n}.bin")));
+        let around = &self.around;
+        let names = std::iter::once(format!("{around}{folder}/{stem}.bin"));
+        let mut names = names.chain((2..).map(|n: u64| format!("{around}{folder}/{stem}-{n}.bin")));
         let name = names.find(|name| self.contents.get(name).is_none_or(|known| *known == bytes)).unwrap_or_default();
         self.contents.insert(name.clone(), bytes);
         name

@@ -43,6 +43,8 @@ pub struct WriteOptions {
     pub head: Vec<String>,
     /// For each draw the lines of a comment above it. Draws behind the last have none.
     pub comments: Vec<Vec<String>>,
+    /// The folder, beside the text, around the files that it names, so that several scenes can stand side by side. Empty: none.
+    pub folder: String,
     /// Whether programs are written as register words.
     pub register_words: bool,
     /// Limits that the text has to meet.
@@ -58,7 +60,7 @@ pub fn scene(scene: &Scene, options: &WriteOptions) -> Result<SceneFiles, Unwrit
     if scene.targets.is_empty() {
         return Err(whole("it has no render target".to_owned()));
     }
-    let mut files = Files::default();
+    let mut files = Files::new(&options.folder);
     let (mut target_names, mut texture_names) = (Used::default(), Used::default());
     let targets: Vec<String> = scene.targets.iter().map(|target| target_names.unique(&target.name)).collect();
     let palettes = Palettes::collect(scene, &mut Used::default());

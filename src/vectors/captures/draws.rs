@@ -2,6 +2,7 @@
 
 use super::{Drawn, SIZE, images};
 use ninebit::state::*;
+pub(super) use ninebit_program::registers::color_of as argb;
 use ninebit_program::text;
 use std::sync::Arc;
 
@@ -138,12 +139,6 @@ pub(super) fn without_alpha(draw: Draw, shows: FinalRegister) -> Draw {
 /// Converts an A8B8G8R8 word to R, G, B, A.
 pub(super) fn abgr(word: u32) -> [u8; 4] {
     word.to_le_bytes()
-}
-
-/// Converts an A8R8G8B8 word to R, G, B, A.
-pub(super) fn argb(word: u32) -> [u8; 4] {
-    let [b, g, r, a] = word.to_le_bytes();
-    [r, g, b, a]
 }
 
 /// A depth buffer that is cleared to the farthest depth.

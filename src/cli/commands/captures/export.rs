@@ -1,7 +1,8 @@
 //! Writes a captured frame as a scene.
 
+use super::super::scene::write_scene;
 use super::*;
-use ninebit_files::output::{write_below, write_text};
+use ninebit_files::output::write_text;
 use ninebit_scene::write::{self, SceneFiles, WriteOptions};
 
 #[derive(Debug, Args)]
@@ -22,12 +23,7 @@ const NAMED: usize = 8;
 
 pub(super) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     let frame = find(&arguments.frame)?;
-    let SceneFiles { text, files } = scene(&frame, arguments.register_words)?;
-    for (name, bytes) in &files {
-        write_below(&arguments.output.join(name), bytes)?;
-    }
-    let path = arguments.output.join(format!("{}.ron", frame.name));
-    write_below(&path, text.as_bytes())?;
+    let path = write_scene(&arguments.output, &frame.name, &scene(&frame, arguments.register_words)?)?;
     Ok(write_text(&format!("{}\n", shown::path(&path)))?)
 }
 
