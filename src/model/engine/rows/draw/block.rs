@@ -18,6 +18,7 @@ use crate::engine::rows::shading::kernels;
 use crate::engine::rows::shading::stages::{Stages, Workshop};
 use crate::engine::rows::store;
 use crate::engine::walk::Band;
+use crate::raster::setup::Triangle;
 use std::ops::Range;
 
 /// The buffers of a thread. They are kept from draw to draw.
@@ -79,7 +80,13 @@ pub(crate) fn begin<const FMA: bool>(compiled: &CompiledDraw, block: &mut Block,
 /// Finds the columns that a triangle covers in some rows.
 #[inline(always)]
 pub(crate) fn find_spans<const FMA: bool>(shape: &Shape, top: i64, columns: (i64, i64), spans: &mut Spans) {
-    *spans = spans::spans(shape, top, columns);
+    *spans = spans::of_triangle(shape, top, columns);
+}
+
+/// Finds the columns that a line covers in some rows.
+#[inline(always)]
+pub(crate) fn find_line_spans<const FMA: bool>(line: &Triangle, top: i64, columns: (i64, i64), spans: &mut Spans) {
+    *spans = spans::of_line(line, top, columns);
 }
 
 /// Sets up the functions of a triangle.
@@ -214,10 +221,12 @@ impl Block {
         let lanes = self.used..self.used + count;
         // Whole vectors, of which the next row overwrites what is too much.
         let beyond = lanes.start..lanes.start + count.next_multiple_of(8);
-        for (n, x) in (0..).zip(&mut self.pixels.x[beyond.clone()]) {
-            *x = (i as i32 + n) as f64;
+        for (first, x) in (i as i32..).step_by(8).zip(self.pixels.x[beyond.clone()].as_chunks_mut::<8>().0) {
+            *x = std::array::from_fn(|n| f64::from(first + n as i32));
         }
-        self.pixels.y[beyond].fill(j as f64);
+        for y in self.pixels.y[beyond].as_chunks_mut::<8>().0 {
+            *y = [j as f64; 8];
+        }
         self.used = lanes.end;
     }
 

@@ -9,7 +9,7 @@ use crate::engine::rows::shading::node::{Input, Node, Value};
 use crate::engine::rows::shading::shader::{self, Shader};
 use crate::plan::{Plan, PlannedDraw};
 use crate::rop::surface;
-use crate::state::{SPRITE_UNIT, TextureImage};
+use crate::state::TextureImage;
 use crate::texture::planned::{Image, PlannedUnit};
 use crate::texture::stage::PlannedShader;
 use std::borrow::Cow;
@@ -165,10 +165,6 @@ fn begin_textures(planned: &PlannedShader, compiled: &mut CompiledDraw) {
 fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> Option<Vec<Sampler>> {
     let mut samplers = Vec::with_capacity(draw.units.len());
     for (index, unit) in draw.units.iter().enumerate() {
-        // PNT-2: rows have no coordinates of points.
-        if draw.point_sprite && unit.index == SPRITE_UNIT {
-            return None;
-        }
         let axes = table::axes(unit)?;
         let depends = draw.shader.is_some() && shader::is_dependent(&unit.stage.operation);
         let folds = draw.shader.is_none();

@@ -15,6 +15,7 @@ use crate::engine::rows::sampling::table::Column;
 use crate::engine::rows::shading::compiled::CompiledDraw;
 use crate::engine::walk::Band;
 use crate::plan::{Plan, PlannedDraw};
+use crate::raster::setup::Triangle;
 use crate::state::{Named, named};
 use multiversion::target::match_target;
 use multiversion::{multiversion, target};
@@ -121,6 +122,7 @@ kernels! {
     {
         fn block::begin(compiled: &CompiledDraw, block: &mut Block, band: &Band<'_>);
         fn block::find_spans(shape: &Shape, top: i64, columns: (i64, i64), spans: &mut Spans);
+        fn block::find_line_spans(line: &Triangle, top: i64, columns: (i64, i64), spans: &mut Spans);
         fn block::set_up(context: &TriangleContext<'_>, shape: &Shape, job: &Job<'_>, block: &mut Block);
         fn block::test_depths(context: &TriangleContext<'_>, shape: &Shape, job: &Job<'_>, block: &mut Block, of: (usize, usize), band: &mut Band<'_>);
         fn block::interpolate(context: &TriangleContext<'_>, shape: &Shape, job: &Job<'_>, block: &mut Block, lanes: Range<usize>);

@@ -97,7 +97,10 @@ impl Drawing<'_, '_> {
         for top in (rows.0 & !1..rows.1).step_by(ROWS) {
             match triangle.figure {
                 Figure::Triangle => (self.kernels.find_spans)(&drawn.shape, top, columns, &mut spans),
-                Figure::Line | Figure::Point => spans = Spans::of_stroke(triangle, top, columns),
+                Figure::Line => (self.kernels.find_line_spans)(triangle, top, columns, &mut spans),
+                Figure::Point => {
+                    (spans.first, spans.end) = ([columns.0 as i32; ROWS], [columns.1 as i32; ROWS]);
+                }
             }
             let count = (rows.1 - top).min(ROWS as i64) as usize;
             let span = |n: usize| {

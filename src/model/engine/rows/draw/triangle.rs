@@ -7,8 +7,10 @@ use crate::engine::rows::geometry::shape::Shape;
 use crate::engine::rows::interpolate::coordinates::Coordinates;
 use crate::engine::rows::interpolate::estimates::Estimates;
 use crate::engine::rows::interpolate::fog::Fog;
+use crate::engine::rows::interpolate::sprites::Sprite;
 use crate::engine::rows::interpolate::{Weighted, colors, numbers};
 use crate::engine::rows::shading::compiled::CompiledDraw;
+use crate::raster::stroke::Figure;
 use crate::raster::weights::Linear;
 use std::ops::Range;
 
@@ -17,6 +19,7 @@ use std::ops::Range;
 pub(crate) struct Functions {
     /// Coordinates of the samplers.
     coordinates: Vec<Coordinates>,
+    sprite: Sprite,
     /// Numbers of the texture shader.
     numbers: Vec<Linear<f64>>,
     fog: Option<Fog>,
@@ -36,6 +39,9 @@ impl Functions {
             let of =
                 if sampler.interpolates() { Coordinates::new(unit, sampler, vertices) } else { Default::default() };
             self.coordinates.push(of);
+        }
+        if draw.point_sprite {
+            self.sprite.set(context, &compiled.samplers);
         }
         self.numbers.clear();
         for (stage, component, _) in compiled.shader.iter().flat_map(|shader| &shader.varying) {
@@ -76,7 +82,10 @@ pub(crate) fn interpolate(
         false => (&mut *pixels, &mut *colors),
     };
     if (varies || compiled.interpolates()) && !all.is_empty() {
-        own.weigh(shape, all.clone(), compiled.takes_quads);
+        match context.triangle.figure {
+            Figure::Point => own.weigh_point(all.clone()),
+            Figure::Triangle | Figure::Line => own.weigh(shape, all.clone(), compiled.takes_quads),
+        }
         if varies {
             colors::weigh(own, all.clone(), weights);
         }
@@ -95,7 +104,10 @@ pub(crate) fn interpolate(
     for ((sampler, coordinates), place) in compiled.samplers.iter().zip(&functions.coordinates).zip(places) {
         if sampler.interpolates() {
             let own = if *is_estimated { &mut undecided.place } else { &mut *place };
-            coordinates.place(sampler, weights, all.clone(), own);
+            if !functions.sprite.place(sampler, pixels, all.clone(), own) {
+                coordinates.place(sampler, weights, all.clone(), own);
+            }
+            coordinates.place_third(sampler, weights, all.clone(), own);
             if *is_estimated {
                 undecided.scatter_place(lanes.clone(), place);
             }

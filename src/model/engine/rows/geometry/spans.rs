@@ -1,7 +1,7 @@
-//! RAS-3: the columns that a triangle covers, several rows at a time.
+//! RAS-3, LIN-1 and LIN-2: the columns that a triangle or a line covers, several rows at a time.
 //!
 //! ```text
-//! inside where  a x + r >= 0,  r = b y + c - owed, all whole
+//! inside where  a x + r >= 0,  r = b y + c, all whole      a triangle owes 1 on edges that are not its own
 //! a > 0:  from column -floor((r + 1/2) / a) on      a < 0:  up to column floor((r + 1/2) / -a)
 //! ```
 //!
@@ -23,30 +23,30 @@ pub(crate) struct Spans {
     pub(crate) end: [i32; ROWS],
 }
 
-impl Spans {
-    /// Returns the columns that a line or a point covers in the rows from `top` on.
-    pub(crate) fn of_stroke(triangle: &Triangle, top: i64, columns: (i64, i64)) -> Spans {
-        let mut spans = Spans::default();
-        for (n, (first, end)) in spans.first.iter_mut().zip(&mut spans.end).enumerate() {
-            let (from, to) = triangle.span(top + n as i64, columns);
-            // Columns of a target have 13 bits.
-            (*first, *end) = (from as i32, to as i32);
-        }
-        spans
-    }
-}
-
 /// A limit beyond all quotients.
 const BEYOND: f64 = (1_u64 << 60) as f64;
 
 /// Finds the covered columns of the rows from `top` on, between two columns.
 #[inline(always)]
-pub(crate) fn spans(shape: &Shape, top: i64, columns: (i64, i64)) -> Spans {
+pub(crate) fn of_triangle(shape: &Shape, top: i64, columns: (i64, i64)) -> Spans {
+    let Shape { a, b, c, owed, .. } = shape;
+    spans([0, 1, 2].map(|k| [a[k], b[k], c[k] - owed[k]]), top, columns)
+}
+
+/// Finds the columns that a line covers in the rows from `top` on, between two columns within its box.
+#[inline(always)]
+pub(crate) fn of_line(line: &Triangle, top: i64, columns: (i64, i64)) -> Spans {
+    spans(line.sides.map(|side| side.map(|n| n as f64)), top, columns)
+}
+
+/// Finds the columns of the rows from `top` on where a x + b y + c is not negative, for each of some [a, b, c].
+#[inline(always)]
+fn spans<const N: usize>(limits: [[f64; 3]; N], top: i64, columns: (i64, i64)) -> Spans {
     let (left, right, top) = (columns.0 as f64, columns.1 as f64, top as f64);
     // Whether an edge is a lower or an upper limit depends on the triangle. Both limits are computed and the other one is moved out of the way.
-    let [mut from, mut to, mut inverse] = [[0.0; 3]; 3];
-    for k in 0..3 {
-        let a = shape.a[k];
+    let [mut from, mut to, mut inverse] = [[0.0; N]; 3];
+    for k in 0..N {
+        let [a, ..] = limits[k];
         (from[k], to[k]) = if a >= 0.0 { (0.0, BEYOND) } else { (-BEYOND, 0.0) };
         // A horizontal edge covers all columns of a row or none.
         inverse[k] = if a == 0.0 { (1 << 20) as f64 } else { 1.0 / a.abs() };
@@ -54,8 +54,9 @@ pub(crate) fn spans(shape: &Shape, top: i64, columns: (i64, i64)) -> Spans {
     let [mut lows, mut highs] = [[0.0; ROWS]; 2];
     for j in 0..ROWS {
         let (mut low, mut high, y) = (left, right, top + j as f64);
-        for k in 0..3 {
-            let r = shape.b[k] * y + (shape.c[k] - shape.owed[k]) + 0.5;
+        for k in 0..N {
+            let [_, b, c] = limits[k];
+            let r = b * y + c + 0.5;
             let floor = (r * inverse[k]).floor();
             low = larger(low, from[k] - floor);
             high = smaller(high, to[k] + (floor + 1.0));
@@ -97,7 +98,7 @@ mod tests {
             let height = triangle.rows.1 - triangle.rows.0;
             let top = triangle.rows.0 + if height > 0 { random.below(height as u128) as i64 } else { 0 };
             let columns = if round % 3 == 0 { (-50, 300) } else { triangle.columns };
-            let found = spans(&shape, top, columns);
+            let found = of_triangle(&shape, top, columns);
             for j in 0..ROWS {
                 let (low, high) = triangle.span(top + j as i64, columns);
                 let (first, end) = (i64::from(found.first[j]), i64::from(found.end[j]));

@@ -67,6 +67,15 @@ impl Pixels {
         }
     }
 
+    /// Writes the weights of a point's vertex: its edge functions are (0, 1, 0) everywhere.
+    #[inline(always)]
+    pub(crate) fn weigh_point(&mut self, lanes: Range<usize>) {
+        for b in &mut self.b {
+            b[lanes.clone()].fill(0.0);
+        }
+        self.reciprocals[lanes].fill(1.0);
+    }
+
     /// Returns edge numbers and reciprocals of at most [`CHUNK`] lanes. Not by calls of a function: compilers do not inline long closures, and what
     /// is not inlined lacks the caller's instruction set.
     #[inline(always)]

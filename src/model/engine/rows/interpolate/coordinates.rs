@@ -77,10 +77,15 @@ impl Coordinates {
                 self.components(weights, lanes.clone(), place);
                 self.finely(sampler, lanes.clone(), place);
                 if sampler.pairs > 0 {
-                    place.settle(lanes.clone(), sampler.bias());
+                    place.settle(lanes, sampler.bias());
                 }
             }
         }
+    }
+
+    /// Computes the layers of lanes, or what depths are compared with, if the sampler has either.
+    #[inline(always)]
+    pub(crate) fn place_third(&self, sampler: &Sampler, weights: Weighted<'_>, lanes: Range<usize>, place: &mut Place) {
         match &sampler.third {
             Some(Third::Layer(layers, axis)) => {
                 let scale = 256.0 * f64::from(*layers);

@@ -7,6 +7,7 @@ pub(super) mod depths;
 pub(super) mod estimates;
 pub(super) mod fog;
 pub(super) mod numbers;
+pub(super) mod sprites;
 
 use super::geometry::weights::CHUNK;
 use super::lanes::{PerLane, larger};

@@ -2,7 +2,7 @@
 
 use super::table::{self, Axis, Table};
 use crate::plan::PlannedDraw;
-use crate::state::{DepthFormat, Filter, MipFilter, ShaderOperation, TextureKind};
+use crate::state::{DepthFormat, Filter, MipFilter, SPRITE_UNIT, ShaderOperation, TextureKind};
 use crate::texture::chain::holds_double;
 use crate::texture::planned::PlannedUnit;
 use std::sync::Arc;
@@ -32,6 +32,8 @@ pub(crate) struct Sampler {
     pub(crate) pairs: usize,
     /// The use of the coordinate r.
     pub(crate) third: Option<Third>,
+    /// Whether points have coordinates of their own (PNT-2).
+    pub(crate) is_sprite: bool,
     /// Index of an earlier sampler that has the same coordinates.
     pub(crate) shares: Option<usize>,
     /// The decoded texture; `None` if the scene draws the image, so that it is decoded for each draw.
@@ -68,6 +70,7 @@ impl Sampler {
             moves: depends && matches!(unit.stage.operation, ShaderOperation::BumpEnvironment { .. }),
             pairs: unit.state.anisotropy as usize / 2,
             third,
+            is_sprite: draw.point_sprite && unit.index == SPRITE_UNIT,
             shares: None,
             table,
         }
@@ -98,7 +101,7 @@ impl Sampler {
 pub(crate) fn share(draw: &PlannedDraw, one: &Sampler, other: &Sampler) -> bool {
     let [a, b] = [one, other].map(|sampler| &draw.units[sampler.index]);
     let [first, second] = [a, b].map(|unit| unit.stage.coordinate_set);
-    !(one.cube || other.cube || one.depends || other.depends)
+    !(one.cube || other.cube || one.depends || other.depends || one.is_sprite || other.is_sprite)
         && (one.third.is_none() && other.third.is_none())
         && (one.filters, one.mixes) == (other.filters, other.mixes)
         && (!one.mixes || selection(a) == selection(b))
