@@ -426,6 +426,25 @@ fn targets_begin_as_textures() {
     assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
 }
 
+/// So do the depths and stencils of a texture: the draw at half of the depth passes where the buffer holds more.
+#[test]
+fn depth_buffers_begin_as_textures() {
+    let loaded = parse(
+        "(version: 1, profile: Nv2a, targets: [(width: 2, height: 1, depth: Z24S8, depth_contents: \"t\")], \
+         textures: { \"t\": (format: Z24S8, kind: Rectangle, source: Texels(width: 2, height: 1, rows: [\"40000012 c0000034\"])) }, \
+         draws: [(vertices: Window([(position: (0, 0, 0.5)), (position: (2, 0, 0.5)), (position: (2, 1, 0.5)), \
+         (position: (0, 1, 0.5))]), topology: Quads, depth_test: (function: Less), \
+         program: Combiners(stages: [()], final_combiner: (d: Invert(Zero), g: Zero)))])",
+    );
+    assert_eq!(loaded.scene.targets[0].depth_contents.as_deref(), Some(&[0x1240_0000, 0x34c0_0000][..]));
+    for engine in [engine::Engine::Scalar, engine::Engine::Fast] {
+        let frames = engine::render(&loaded.plan, &RenderOptions { engine, ..RenderOptions::default() });
+        let ninebit::frame::Surface { words, depth, .. } = &frames.surfaces[0];
+        assert_eq!((words[0], words[1]), (0xff00_0000, 0x00ff_ffff), "{engine:?}");
+        assert_eq!((depth[0], depth[1] >> 24), (0x1240_0000, 0x34), "{engine:?}");
+    }
+}
+
 #[test]
 fn units_targets_as_textures_and_combiners() {
     let loaded = parse(

@@ -129,12 +129,23 @@ const CASES: &[Case] = &[
         s.draws[0].window_clip = Some(WindowClip { rectangles: vec![rectangle; 9], exclusive: true });
     }),
     ("target `frame` begins with 3 words", |s| s.targets[0].contents = Some(vec![0; 3].into())),
-    ("word 1 that target `other` begins with is 0x100", |s| {
+    ("target `other` begins with 0x100 at word 1", |s| {
         let pixels = (s.targets[1].width * s.targets[1].height) as usize;
         let mut words = vec![0xff; pixels];
         words[1] = 0x100;
         (s.targets[1].format, s.targets[1].contents) = (SurfaceFormat::B8, Some(words.into()));
         s.textures[1].format = TextureFormat::L8;
+    }),
+    ("target `frame` has contents of a depth buffer, and no depth buffer", |s| {
+        let pixels = (s.targets[0].width * s.targets[0].height) as usize;
+        (s.targets[0].depth, s.targets[0].depth_contents) = (None, Some(vec![0; pixels].into()));
+        s.draws.iter_mut().for_each(|draw| (draw.depth_test, draw.stencil_test) = (None, None));
+    }),
+    ("the depth buffer of target `frame` begins with 0x10000 at word 0", |s| {
+        let pixels = (s.targets[0].width * s.targets[0].height) as usize;
+        s.targets[0].depth = Some(DepthBuffer { format: DepthFormat::Z16, clear: 0, clear_stencil: 0 });
+        s.targets[0].depth_contents = Some(vec![1 << 16; pixels].into());
+        s.draws.iter_mut().for_each(|draw| draw.stencil_test = None);
     }),
     ("target `frame` clears its depth to 0x1000000", |s| s.targets[0].depth.as_mut().unwrap().clear = 1 << 24),
     ("palette `colours` has 3 entries", |s| s.palettes[0].entries = vec![0; 3].into()),

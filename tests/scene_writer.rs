@@ -83,8 +83,9 @@ fn said(scene: &Scene, profile: Profile) -> Vec<String> {
     let mut lines = vec![format!("{profile:?}")];
     for target in &scene.targets {
         let clip = target.clip.map(|clip| inside(&clip, target));
-        let contents = target.contents.as_ref().map(|words| words.to_vec());
-        lines.push(format!("{:?}", Target { clip, contents: None, ..target.clone() }));
+        let contents =
+            [&target.contents, &target.depth_contents].map(|words| words.as_ref().map(|words| words.to_vec()));
+        lines.push(format!("{:?}", Target { clip, contents: None, depth_contents: None, ..target.clone() }));
         lines.push(format!("{contents:?}"));
     }
     for (index, draw) in scene.draws.iter().enumerate() {

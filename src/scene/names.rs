@@ -102,13 +102,22 @@ pub(crate) struct Names<'a> {
     pub(super) blends: Table<'a>,
 }
 
+/// A buffer of a target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Buffer {
+    /// Colours.
+    Color,
+    /// Depths and stencils.
+    Depth,
+}
+
 /// The render targets, with their names.
 #[derive(Default)]
 pub(crate) struct Targets<'a> {
     pub(super) list: Vec<Target>,
     pub(super) index: Index,
     /// Targets that begin with the words of a texture, and the texture's name; textures are read later.
-    pub(super) begins: Vec<(usize, Raw<'a, String>)>,
+    pub(super) begins: Vec<(usize, Buffer, Raw<'a, String>)>,
 }
 
 /// The textures, with their names.

@@ -63,7 +63,7 @@ fn stretch(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     let stretched = |r: Rectangle| Rectangle { x: r.x * x, y: r.y * y, width: r.width * x, height: r.height * y };
     (target.width, target.height) = (width, height);
     target.clip = target.clip.map(stretched);
-    if let Some(contents) = &mut target.contents {
+    for contents in [&mut target.contents, &mut target.depth_contents].into_iter().flatten() {
         *contents = contents.iter().copied().cycle().take((width * height) as usize).collect();
     }
     let (x, y) = (x as f32, y as f32);

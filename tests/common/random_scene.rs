@@ -228,9 +228,21 @@ fn target(c: &mut Choices<'_>, profile: Profile, n: u32, large: bool) -> Target 
     // One target in four has contents, which are derived from the clear colour and take no words of the tape, so that the other choices
     // stay the same.
     let seed = u32::from_le_bytes(clear_color);
-    let word = |n: u32| seed.wrapping_add(n).wrapping_mul(0x9e37_79b1) >> (32 - 8 * format.bytes());
-    let contents = clear_color[3].is_multiple_of(4).then(|| (0..width * height).map(word).collect());
-    Target { name: format!("target{n}"), width, height, format, clear_color, contents, depth, clip: None }
+    let words = |bits: u32| {
+        (0..width * height).map(|n| seed.wrapping_add(n).wrapping_mul(0x9e37_79b1) >> (32 - bits)).collect()
+    };
+    let contents = clear_color[3].is_multiple_of(4).then(|| words(8 * format.bytes()));
+    // The same of depths, where there are textures of such words.
+    let has_depths = profile == Profile::Nv2a && clear_color[2].is_multiple_of(4);
+    let bits = depth.filter(|_| has_depths).map(|depth| stored_bits(depth.format));
+    let depth_contents = bits.map(words);
+    let name = format!("target{n}");
+    Target { name, clear_color, contents, depth, depth_contents, ..Target::new(width, height, format) }
+}
+
+/// Returns the bits that a pixel of a depth buffer has, with those of its stencil.
+pub(crate) fn stored_bits(format: DepthFormat) -> u32 {
+    if format.has_stencil() { 32 } else { format.bits() }
 }
 
 fn draw(c: &mut Choices<'_>, given: &Given<'_>, n: u32) -> Draw {

@@ -47,7 +47,10 @@ pub fn render(scene: &Scene, policies: &Policies) -> Vec<Surface> {
                     || vec![rop::store(t.format, t.clear_color.map(i128::from)); pixels],
                     |words| words.to_vec(),
                 ),
-                depth: t.depth.map_or(Vec::new(), |d| vec![d.clear + (u32::from(d.clear_stencil) << 24); pixels]),
+                depth: t.depth_contents.as_ref().map_or_else(
+                    || t.depth.map_or(Vec::new(), |d| vec![d.clear + (u32::from(d.clear_stencil) << 24); pixels]),
+                    |words| words.to_vec(),
+                ),
             }
         })
         .collect();

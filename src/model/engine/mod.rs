@@ -37,7 +37,7 @@ use context::TriangleContext;
 use rows::Rows;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 named! {
     /// The engine that draws. The result does not depend on it.
@@ -330,11 +330,12 @@ fn empty(target: &Target) -> Surface {
 
 /// Clears a band of a target, or sets its initial contents.
 fn clear(target: &Target, band: walk::Band<'_>) {
-    match &target.contents {
-        Some(contents) => band.words.copy_from_slice(&contents[band.first_row * band.width..][..band.words.len()]),
-        None => band.words.fill(surface::pack(target.format, target.clear_color)),
-    }
-    band.depth.fill(target.depth.map_or(0, |depth| depth.cleared()));
+    let begin = |words: &mut [u32], contents: &Option<Arc<[u32]>>, cleared: u32| match contents {
+        Some(contents) => words.copy_from_slice(&contents[band.first_row * band.width..][..words.len()]),
+        None => words.fill(cleared),
+    };
+    begin(band.words, &target.contents, surface::pack(target.format, target.clear_color));
+    begin(band.depth, &target.depth_contents, target.depth.map_or(0, |depth| depth.cleared()));
 }
 
 /// The rows of a surface between borders, each with its number, for whoever takes them first.

@@ -122,7 +122,7 @@ impl Check<'_> {
         let most = self.limits.target_side.min((GUARD / 16) as u32);
         let profile = self.scene.profile;
         for target in &self.scene.targets {
-            let Target { name, width, height, format, depth, contents, .. } = target;
+            let Target { name, width, height, format, depth, contents, depth_contents, .. } = target;
             for (side, what) in [(*width, "width"), (*height, "height")] {
                 if !(1..=most).contains(&side) {
                     let message = format!("the {what} of target `{name}` is {side}");
@@ -130,7 +130,21 @@ impl Check<'_> {
                 }
             }
             if let Some(words) = contents {
-                self.contents(target, words);
+                let what = format!("target `{name}` begins with");
+                self.contents(target, words, (&what, "ROP-5"), (8 * format.bytes(), format.name()));
+            }
+            if let Some(words) = depth_contents {
+                let what = format!("the depth buffer of target `{name}` begins with");
+                match depth.map(|depth| depth.format) {
+                    Some(format) => {
+                        let bits = if format.has_stencil() { 32 } else { format.bits() };
+                        self.contents(target, words, (&what, "DEP-2"), (bits, format.name()));
+                    }
+                    None => {
+                        let message = format!("target `{name}` has contents of a depth buffer, and no depth buffer");
+                        self.refuse("NB0226", None, message, "give it a depth buffer, or no such contents");
+                    }
+                }
             }
             self.accept(legality::surface::format(*format, profile, None));
             self.accept(depth.and_then(|depth| legality::surface::depth_format(depth.format, profile, None)));
@@ -151,19 +165,22 @@ impl Check<'_> {
     }
 
     /// Checks that the contents have one word for each pixel, with no bits above the pixel's.
-    fn contents(&mut self, target: &Target, words: &[u32]) {
-        let Target { name, width, height, format, .. } = target;
-        let pixels = u64::from(*width) * u64::from(*height);
+    fn contents(
+        &mut self,
+        target: &Target,
+        words: &[u32],
+        (what, rule): (&str, &'static str),
+        (bits, format): (u32, &str),
+    ) {
+        let pixels = u64::from(target.width) * u64::from(target.height);
         if words.len() as u64 != pixels {
-            let message = format!("target `{name}` begins with {} words", words.len());
-            self.refuse("NB0226", None, message, format!("its pixels take {pixels}"));
+            self.refuse("NB0226", None, format!("{what} {} words", words.len()), format!("its pixels take {pixels}"));
         }
-        let bits = 8 * format.bytes();
         if bits < 32
             && let Some(at) = words.iter().position(|word| word >> bits != 0)
         {
-            let message = format!("word {at} that target `{name}` begins with is {:#x}", words[at]);
-            self.refuse("NB0226", "ROP-5", message, format!("a pixel of {} has {bits} bits", format.name()));
+            let message = format!("{what} {:#x} at word {at}", words[at]);
+            self.refuse("NB0226", rule, message, format!("a pixel of {format} has {bits} bits"));
         }
     }
 

@@ -21,6 +21,7 @@ impl Target {
             format,
             clear_color: [0; 4],
             contents: None,
+            depth_contents: None,
             depth: None,
             clip: None,
         }

@@ -405,6 +405,9 @@ pub struct Target {
     pub contents: Option<Arc<[u32]>>,
     /// Depth buffer, if the target has one.
     pub depth: Option<DepthBuffer>,
+    /// Contents of the depth buffer before the first draw, in place of what the clear stores: one word for each pixel, as
+    /// [`depth_stencil`] packs it. Nothing without a depth buffer.
+    pub depth_contents: Option<Arc<[u32]>>,
     /// Surface clip (CLP-2): nothing is drawn outside. `None` means the whole target.
     pub clip: Option<Rectangle>,
 }

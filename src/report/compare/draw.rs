@@ -9,7 +9,7 @@ use ninebit::engine::{TextureWords, cleared_colors};
 use ninebit::number::Lane;
 use ninebit::plan::{Plan, PlannedDraw};
 use ninebit::rop::surface;
-use ninebit::state::{Named, Texture, TextureImage};
+use ninebit::state::{Named, Texture, TextureImage, depth_of};
 use ninebit::texture::planned::Image;
 use ninebit::threads::on_threads;
 use ninebit::trace::{Decision, Observer, Part, Rule};
@@ -156,8 +156,17 @@ impl<L: Lane> Surface<L> {
     fn new(plan: &Plan, target: usize, (first, end): (usize, usize)) -> Self {
         let target = &plan.targets()[target];
         let (width, pixels) = (target.width as usize, (end - first) * target.width as usize);
-        let (clear, word) = target.depth.map_or((0, 0), |depth| (depth.clear, depth.cleared()));
-        let memory = DepthStencil { depth: L::depth(i64::from(clear), || f64::from(clear)), ..DepthStencil::new(word) };
+        let depth = match (&target.depth_contents, target.depth) {
+            (Some(words), _) => words[first * width..end * width].to_vec(),
+            (None, Some(depth)) => vec![depth.cleared(); pixels],
+            (None, None) => Vec::new(),
+        };
+        let memory = |at: usize| {
+            let word = depth.get(at).copied().unwrap_or(0);
+            let steps = depth_of(word);
+            DepthStencil { depth: L::depth(i64::from(steps), || f64::from(steps)), ..DepthStencil::new(word) }
+        };
+        let states = (0..pixels).map(|at| State { depth: memory(at), ..State::default() }).collect();
         Surface {
             first_row: first,
             width,
@@ -165,12 +174,12 @@ impl<L: Lane> Surface<L> {
                 Some(words) => words[first * width..end * width].to_vec(),
                 None => vec![surface::pack(target.format, target.clear_color); pixels],
             },
-            depth: target.depth.map_or(Vec::new(), |_| vec![word; pixels]),
+            states,
+            depth,
             held: match &target.contents {
                 Some(_) => (first * width..end * width).map(|at| cleared_colors(target, at).map(L::byte)).collect(),
                 None => vec![cleared_colors(target, 0).map(L::byte); pixels],
             },
-            states: vec![State { depth: memory, ..State::default() }; pixels],
         }
     }
 

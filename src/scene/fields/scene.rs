@@ -164,6 +164,9 @@ source! {
         /// name of a [texture](#textures) whose words the target holds before the first draw, in place of the clear's colour: one picture of one level, of
         /// as many columns and rows, texels of as many bytes
         contents: String [or "none"],
+        /// name of a texture of depths whose words the depth buffer holds before the first draw, in place of the clear's depth and stencil: of its own
+        /// format, one picture of as many columns and rows
+        depth_contents: String [or "none"],
         /// depth buffer; those that end in S8 have a stencil as well. On Nv2a also those with F, which hold floats (DEP-3)
         depth: Name<state::DepthFormat> [or "none"],
         /// a [rectangle](#rectangles) within the target: no draw touches pixels outside (CLP-2)

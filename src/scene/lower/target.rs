@@ -2,7 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "DEP-2: the depth that a clear stores is given as a float")]
 
 use super::*;
-use crate::names::{Index, Targets};
+use crate::names::{Buffer, Index, Targets};
 pub(super) use ninebit::diagnostic::needs_nv2a;
 use ninebit::legality;
 use ninebit::number::convert;
@@ -62,8 +62,8 @@ pub(super) fn targets<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, source::
         }
         let target = target(reader, &fields, name);
         bytes += u64::from(target.width) * u64::from(target.height) * if target.depth.is_some() { 8 } else { 4 };
-        if let Some(raw) = fields.contents {
-            reader.targets.begins.push((reader.targets.list.len(), raw));
+        for (raw, of) in [(fields.contents, Buffer::Color), (fields.depth_contents, Buffer::Depth)] {
+            reader.targets.begins.extend(raw.map(|raw| (reader.targets.list.len(), of, raw)));
         }
         reader.targets.add(place, target);
     }
@@ -83,8 +83,7 @@ impl Targets<'_> {
 
 fn target<'a>(reader: &mut Reader<'a>, fields: &source::Target<'a>, name: String) -> Target {
     let (width, height, format) = (fields.width(reader), fields.height(reader), fields.format(reader));
-    let mut target =
-        Target { name, width, height, format, clear_color: [0; 4], contents: None, depth: None, clip: None };
+    let mut target = Target { name, clear_color: [0; 4], ..Target::new(width, height, format) };
     reader.accept(legality::surface::format(format, reader.profile, reader.place(&fields.format)));
     let depth: Option<DepthFormat> = fields.depth.as_ref().and_then(|raw| reader.name(raw));
     let place = reader.place(&fields.depth);
@@ -125,40 +124,62 @@ pub(crate) fn depth_word(format: DepthFormat, depth: f32) -> u32 {
 
 /// Fills targets with the textures that they begin as.
 pub(super) fn contents(reader: &mut Reader<'_>) {
-    for (index, raw) in std::mem::take(&mut reader.targets.begins) {
+    for (index, buffer, raw) in std::mem::take(&mut reader.targets.begins) {
         let Some(texture) = texture::find(reader, &raw) else { continue };
         let (target, texture) = (&mut reader.targets.list[index], &reader.textures.list[texture]);
-        let Target { name, width, height, format, .. } = target;
-        let why = match &texture.image {
-            TextureImage::Target { .. } | TextureImage::Depth { .. } => "is a render target".to_owned(),
-            TextureImage::Texels(texels) if (texels.width, texels.height) != (*width, *height) => {
-                let (columns, rows) = (texels.width, texels.height);
-                format!("has {columns} x {rows} texels, the target {width} x {height} pixels")
+        match words(target, buffer, texture) {
+            Ok(words) if buffer == Buffer::Color => target.contents = Some(words),
+            Ok(words) => target.depth_contents = Some(words),
+            Err((why, help)) => {
+                let what = if buffer == Buffer::Color { "" } else { "the depths of " };
+                let message =
+                    format!("{what}target \"{}\" cannot begin as this texture: it {why}", shorten(&target.name));
+                reader.push(finding("NB0226", reader.span(&raw), message, "does not fit", help));
             }
-            TextureImage::Texels(_)
-                if texture.format.is_compressed()
-                    || texture.format.depth().is_some()
-                    || texture.format.bytes() != format.bytes() =>
-            {
-                let (texel, pixel) = (texture.format.name(), format.name());
-                format!("is of format {texel}, whose texels are no pixels of {pixel}")
-            }
-            TextureImage::Texels(texels)
-                if matches!(texture.kind, TextureKind::Cube | TextureKind::ThreeDimensional)
-                    || texels.levels > 1
-                    || texels.border =>
-            {
-                "has faces, layers, levels or border texels".to_owned()
-            }
-            TextureImage::Texels(texels) => {
-                target.contents = Some(Arc::clone(&texels.words));
-                continue;
-            }
-        };
-        let message = format!("target \"{}\" cannot begin as this texture: it {why}", shorten(name));
-        let help = "take one picture of as many columns and rows, in a format whose texels have as many bytes";
-        reader.push(finding("NB0226", reader.span(&raw), message, "does not fit", help));
+        }
     }
+}
+
+/// Returns the words that a buffer takes from a texture, or why it cannot and what to do.
+fn words(target: &Target, buffer: Buffer, texture: &Texture) -> Result<Arc<[u32]>, (String, &'static str)> {
+    let Target { width, height, format, .. } = target;
+    let help = match buffer {
+        Buffer::Color => "take one picture of as many columns and rows, in a format whose texels have as many bytes",
+        Buffer::Depth => "take one picture of as many columns and rows, in the depth buffer's own format",
+    };
+    let refused = |why: String| Err((why, help));
+    let texels = match &texture.image {
+        TextureImage::Target { .. } | TextureImage::Depth { .. } => return refused("is a render target".to_owned()),
+        TextureImage::Texels(texels) => texels,
+    };
+    if (texels.width, texels.height) != (*width, *height) {
+        let (columns, rows) = (texels.width, texels.height);
+        return refused(format!("has {columns} x {rows} texels, the target {width} x {height} pixels"));
+    }
+    let (name, depth) = (texture.format.name(), texture.format.depth());
+    match (buffer, target.depth) {
+        (Buffer::Color, _) => {
+            if texture.format.is_compressed() || depth.is_some() || texture.format.bytes() != format.bytes() {
+                return refused(format!("is of format {name}, whose texels are no pixels of {}", format.name()));
+            }
+        }
+        (Buffer::Depth, None) => {
+            return Err((
+                "has no place, for there is no depth buffer".to_owned(),
+                "add `depth: Z24S8` (or `Z16`) to the target",
+            ));
+        }
+        (Buffer::Depth, Some(buffer)) => {
+            if depth != Some(buffer.format) {
+                return refused(format!("is of format {name}, the depth buffer of {}", buffer.format.name()));
+            }
+        }
+    }
+    let has_several = matches!(texture.kind, TextureKind::Cube | TextureKind::ThreeDimensional);
+    if has_several || texels.levels > 1 || texels.border {
+        return refused("has faces, layers, levels or border texels".to_owned());
+    }
+    Ok(Arc::clone(&texels.words))
 }
 
 /// Reads the depth that a clear stores into a target with a depth buffer: 0 to 1, or for a float buffer any depth that is not negative.

@@ -15,6 +15,7 @@ mod vertices;
 mod words;
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use draw::Parts;
 use files::{Files, Used};
@@ -96,10 +97,25 @@ fn write_targets(
 ) -> Result<Node, Unwritable> {
     let target = |(target, name): (&Target, &String)| {
         let reason = |reason| Unwritable { place: format!("target `{name}`"), reason };
-        let words = target.contents.as_ref();
-        let contents = words.map(|words| textures.add_contents(target, words, scene.profile, texture_names));
-        let contents = contents.transpose().map_err(reason)?;
-        Ok(Node::from(target::target(target, name, contents.as_deref())))
+        let mut add = |words: &Option<Arc<[u32]>>, format| {
+            let words = words.as_ref();
+            let name = words.map(|words| textures.add_contents((target, format), words, scene.profile, texture_names));
+            name.transpose().map_err(reason)
+        };
+        // Of formats of 8 to 32 bits that a surface may have, those of which every bit counts.
+        let colors = match target.format.bytes() {
+            1 => TextureFormat::I8,
+            2 => TextureFormat::R5G6B5,
+            _ => TextureFormat::A8R8G8B8,
+        };
+        let depths = match target.depth.map(|depth| depth.format) {
+            Some(DepthFormat::Z16) | None => TextureFormat::Z16,
+            Some(DepthFormat::Z24S8) => TextureFormat::Z24S8,
+            Some(DepthFormat::Z16F) => TextureFormat::Z16F,
+            Some(DepthFormat::Z24S8F) => TextureFormat::Z24S8F,
+        };
+        let contents = [add(&target.contents, colors)?, add(&target.depth_contents, depths)?];
+        Ok(Node::from(target::target(target, name, contents.each_ref().map(Option::as_deref))))
     };
     Ok(Node::list(scene.targets.iter().zip(names).map(target).collect::<Result<Vec<_>, _>>()?))
 }

@@ -6,8 +6,8 @@ use super::node::{Fields, Node};
 use crate::lower::depth_word;
 use ninebit::state::*;
 
-/// Returns a target; `contents` is the name of the image that it begins as.
-pub(super) fn target(target: &Target, name: &str, contents: Option<&str>) -> Fields {
+/// Returns a target; `contents` has the names of the images that its colours and its depths begin as.
+pub(super) fn target(target: &Target, name: &str, contents: [Option<&str>; 2]) -> Fields {
     let mut fields = Fields::new("");
     fields.put("name", Node::text(name));
     fields.put("width", Node::whole(target.width));
@@ -28,8 +28,10 @@ pub(super) fn target(target: &Target, name: &str, contents: Option<&str>) -> Fie
         clear.whole("stencil", buffer.clear_stencil, 0);
     }
     fields.put_some("clear", clear);
-    if let Some(contents) = contents {
-        fields.put("contents", Node::text(contents));
+    for (field, contents) in ["contents", "depth_contents"].into_iter().zip(contents) {
+        if let Some(contents) = contents {
+            fields.put(field, Node::text(contents));
+        }
     }
     if let Some(clip) = &target.clip {
         fields.put("clip", rectangle(&within(clip, target)));

@@ -57,28 +57,22 @@ impl Textures {
         textures
     }
 
-    /// Adds the image that a target begins as. Returns its name.
+    /// Adds the image that a target begins as, its colours or its depths. Returns its name.
     ///
     /// # Errors
     /// The chip has no texture of that size.
     pub(super) fn add_contents(
         &mut self,
-        target: &Target,
+        (target, format): (&Target, TextureFormat),
         words: &[u32],
         profile: Profile,
         names: &mut Used,
     ) -> Result<String, String> {
-        // Formats of which every bit counts.
-        let format = match target.format.bytes() {
-            1 => TextureFormat::I8,
-            2 => TextureFormat::R5G6B5,
-            _ => TextureFormat::A8R8G8B8,
-        };
         let sides = [target.width, target.height];
         let powers = sides.iter().all(|side| side.is_power_of_two());
         let kind = if powers { TextureKind::TwoDimensional } else { TextureKind::Rectangle };
         let checks = TextureChecks { profile, largest_side: u32::MAX };
-        if let Some(finding) = checks.sides(kind, format, sides, None) {
+        if let Some(finding) = checks.format(format, None).or_else(|| checks.sides(kind, format, sides, None)) {
             return Err(format!("the image that it begins as is no texture: {}", finding.message));
         }
         let name = names.unique(&format!("contents of {}", target.name));

@@ -263,6 +263,7 @@ pub(super) fn scene(
         format: SurfaceFormat::A8R8G8B8,
         clear_color: [0; 4],
         contents: None,
+        depth_contents: None,
         depth: Some(DepthBuffer { format: depth, clear: 0, clear_stencil: 0 }),
         clip: None,
     };
