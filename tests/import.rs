@@ -103,3 +103,30 @@ fn wrong_inputs_are_refused() {
     bench.run(&format!("export {} --to methods -o out", scene.display())).failed(3, "NB1610");
     assert!(!bench.path("out").exists());
 }
+
+/// The folder of a hardware tracer: the log without an extension that says so, and a surface after its one draw, in which one pixel is not as drawn.
+#[test]
+fn a_tracers_folder_is_compared_with_the_chips_surfaces() {
+    let bench = Bench::new();
+    let vertices = "0x194c 0xff0000ff\n0x1500 0x0\n0x1504 0x0\n0x1508 0x0\n".repeat(3);
+    let log = LOG.replace("[0] 0x5\n", &format!("[0] 0x5\n{vertices}")).replace("[0] 0x6\n", "[0] 0x4\n");
+    let log = log.replace("nv2a_pgraph_flip_stall\n", "");
+    let clear = "nv2a_pgraph_method 0: 0x97 -> 0x1d90 0xff204060\nnv2a_pgraph_method 0: 0x97 -> 0x1d94 0xf0\n";
+    let pitch = "nv2a_pgraph_method 0: 0x97 -> 0x020c 0x400040\nnv2a_pgraph_method 0: 0x97 -> 0x0210 0x1000\n\
+                 nv2a_pgraph_method 0: 0x97 -> 0x1d98 0xf0000\nnv2a_pgraph_method 0: 0x97 -> 0x1d9c 0xf0000\n";
+    let (state, draw) = log.split_at(log.find("nv2a_pgraph_method 0: 0x97 -> 0x17fc").unwrap());
+    std::fs::create_dir(bench.path("trace")).unwrap();
+    bench.write("trace/nv2a_log.txt", format!("pgraph method log from nvtrc\n{state}{pitch}{clear}{draw}"));
+    let mut surface: Vec<u8> = [0x60, 0x40, 0x20, 0xff].repeat(256);
+    bench.write("trace/0000000001_0_0_Surface_Color.bin", &surface);
+    surface[4 * 17] = 0x61;
+    bench.write("trace/0000000002_0_1_Surface_Color.bin", &surface);
+    let text = bench.run("import trace --each-draw -o draws").text();
+    assert!(text.contains("surfaces compared with the chip's: 1, exact 0"), "{text}");
+    assert!(text.contains("colours in 1 of 256 pixels, first 1,1: 0xff204061 by the chip, 0xff204060 here"), "{text}");
+    let replayed = bench.run("replay draws");
+    let text = String::from_utf8(replayed.stdout).unwrap();
+    assert!(replayed.status == 1 && text.contains("1 of 256 pixels"), "{text} {}", replayed.stderr);
+    let frames = bench.run("import trace").text();
+    assert!(frames.contains("frame 0: surface 00001000 differs from the chip's"), "{frames}");
+}

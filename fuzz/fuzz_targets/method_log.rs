@@ -3,7 +3,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use ninebit::plan::{Plan, PlanOptions};
-use ninebit_methods::import::{Importer, Options, import};
+use ninebit_methods::import::{Importer, Options, Sources, import};
 use ninebit_methods::memory::Memory;
 use ninebit_methods::pushbuffer::follow;
 use ninebit_methods::state::State;
@@ -20,7 +20,8 @@ fuzz_target!(|bytes: &[u8]| {
     frames.into_iter().for_each(&mut each);
     // A circle ends after as many words as a minute of a program sends, which is too long here: half of the input is followed as far as it is straight.
     if !bytes.chunks_exact(4).any(|word| matches!(word[0] & 3, 1 | 2) || word[3] >> 5 == 1) {
-        let mut importer = Importer::new(State::default(), &memory, Options::default(), &mut each);
+        let sources = Sources { memory: memory.clone(), ..Sources::default() };
+        let mut importer = Importer::new(State::default(), sources, Options::default(), &mut each);
         let _ = follow(&memory, 0, (bytes.len() / 4 * 4) as u64, &mut |entry| importer.take(&entry));
         importer.finish(None);
     }

@@ -1,6 +1,7 @@
 //! Frames: the draws and clears between two flips, as a scene.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use ninebit::plan::{Plan, PlanError, PlanOptions};
 use ninebit::raster::depth;
@@ -16,8 +17,10 @@ use crate::draw::surface::{Surface, surface};
 use crate::draw::texture::{Image, entries, image, palette, unit};
 use crate::draw::view::View;
 use crate::draw::{raster, shader, vertices};
+use crate::dumps::Buffer;
 use crate::gap::Gap;
-use crate::memory::{Layout, Memory, raw, words};
+use crate::import::Sources;
+use crate::memory::{Layout, Memory, raw, raw_depths, words};
 use crate::state::{Batch, State};
 
 /// A draw or a clear of a frame.
@@ -44,6 +47,21 @@ pub struct Frame {
     pub scene: Scene,
     /// The draws and clears in order.
     pub drawn: Vec<Operation>,
+    /// What the chip's surfaces held after the last draw, where that was dumped.
+    pub held: Vec<Held>,
+}
+
+/// What a surface of the chip held after the last draw into it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Held {
+    /// Index of the target in the scene.
+    pub target: usize,
+    /// Number of the draw in the log.
+    pub draw: u64,
+    /// A word for each pixel, as [`ninebit::frame::Surface::words`].
+    pub words: Option<Vec<u32>>,
+    /// A word for each pixel, as [`ninebit::frame::Surface::depth`].
+    pub depth: Option<Vec<u32>>,
 }
 
 impl Frame {
@@ -62,8 +80,25 @@ struct TargetUse {
     uses: usize,
     /// Whether the log has all that it holds.
     has_contents: bool,
-    /// Whether a clear of everything comes first.
-    is_cleared: bool,
+    /// Whether a clear of all colours, and one of all depths, comes first.
+    is_cleared: [bool; 2],
+    /// Bytes of the colours and of the depths before the first draw, as they were dumped.
+    dumped: [Option<Vec<u8>>; 2],
+    /// Number of the last draw, if no clear follows it.
+    last_draw: Option<u64>,
+}
+
+impl TargetUse {
+    /// Returns the words of the colours or the depths of a target, of bytes that begin where the buffer does.
+    fn words(&self, target: &Target, buffer: Buffer, memory: &Memory, address: u32) -> Option<Vec<u32>> {
+        let Surface { pitch, zeta_pitch, swizzled, .. } = self.surface;
+        let (format, pitch) = match buffer {
+            Buffer::Color => (raw(target.format), pitch),
+            Buffer::Depth => (raw_depths(target.depth?.format), zeta_pitch),
+        };
+        let layout = swizzled.map_or(Layout::Pitch(pitch), |_| Layout::Swizzled);
+        words(memory, address.into(), format, [target.width, target.height, 1], layout)
+    }
 }
 
 /// Builds the scene of a frame.
@@ -101,7 +136,8 @@ impl Builder {
             let zeta = (word & 1 != 0, word & 2 != 0 && surface.depth.has_stencil());
             let target = self.target(&mut view, &surface, zeta.0 || zeta.1)?;
             let clear = self.clear_target(&mut view, (target, &surface), word, zeta);
-            self.known[target].uses += 1;
+            let known = &mut self.known[target];
+            (known.uses, known.last_draw) = (known.uses + 1, None);
             self.draws.push(clear?.draw(name.clone(), target));
             Some(self.draws.len() - 1)
         });
@@ -144,9 +180,10 @@ impl Builder {
         if self.known[target].uses == 0 && area == whole && (all || !colors) && complete {
             if let Some(color) = color {
                 self.targets[target].clear_color = color;
-                self.known[target].is_cleared = true;
+                self.known[target].is_cleared[Buffer::Color as usize] = true;
             }
             if zeta {
+                self.known[target].is_cleared[Buffer::Depth as usize] = true;
                 let buffer = DepthBuffer { format: surface.depth, clear: depth_word, clear_stencil: stencil_byte };
                 self.targets[target].depth = Some(buffer);
             }
@@ -166,6 +203,22 @@ impl Builder {
         (width > 0 && height > 0).then_some(Clear { area, color, color_mask: mask, depth, stencil })
     }
 
+    /// Begins a target as it was dumped before its first draw.
+    fn take_dumped(&mut self, target: usize, uses_depth: bool, sources: &Sources, number: u64) {
+        let known = &mut self.known[target];
+        if known.uses > 0 {
+            return;
+        }
+        let [of_colors, of_depths] = known.is_cleared;
+        if !of_colors {
+            known.dumped[Buffer::Color as usize] = sources.dumps.before(number, Buffer::Color);
+            known.has_contents |= known.dumped[Buffer::Color as usize].is_some();
+        }
+        if uses_depth && !of_depths {
+            known.dumped[Buffer::Depth as usize] = sources.dumps.before(number, Buffer::Depth);
+        }
+    }
+
     /// Notes once that a target held something before the log.
     fn contents(&mut self, view: &mut View<'_>, target: usize) {
         let known = &mut self.known[target];
@@ -176,15 +229,16 @@ impl Builder {
     }
 
     /// Takes a draw.
-    pub(crate) fn draw(&mut self, state: &State, memory: &Memory, batch: &Batch, number: u64) {
+    pub(crate) fn draw(&mut self, state: &State, sources: &Sources, batch: &Batch, number: u64) {
         let mut view = View::new(state);
         let line = batch.line;
-        let draw = self.lower(&mut view, memory, batch);
+        let draw = self.lower(&mut view, sources, batch, number);
         let count = draw.as_ref().map_or(0, |draw| draw.indices.len());
         let primitive = raster::topology(batch.primitive).map_or("unknown primitive", Named::name);
         let name = format!("draw {number} at line {line}: {primitive} of {count} vertices");
         let draw = draw.map(|draw| {
-            self.known[draw.target].uses += 1;
+            let known = &mut self.known[draw.target];
+            (known.uses, known.last_draw) = (known.uses + 1, Some(number));
             self.draws.push(Draw { name: format!("draw {number}, line {line}"), ..draw });
             self.draws.len() - 1
         });
@@ -203,7 +257,8 @@ impl Builder {
         });
     }
 
-    fn lower(&mut self, view: &mut View<'_>, memory: &Memory, batch: &Batch) -> Option<Draw> {
+    fn lower(&mut self, view: &mut View<'_>, sources: &Sources, batch: &Batch, number: u64) -> Option<Draw> {
+        let memory = &sources.memory;
         let Some(topology) = raster::topology(batch.primitive) else {
             view.note(Gap::BadValue(class::SET_BEGIN_END, batch.primitive));
             return None;
@@ -216,6 +271,7 @@ impl Builder {
         }
         let tests = draw.depth_test.is_some() || draw.stencil_test.is_some();
         draw.target = self.target(view, &surface, tests)?;
+        self.take_dumped(draw.target, tests, sources, number);
         self.contents(view, draw.target);
         draw.scissor = Some(surface.clip);
         draw.combiners = shader::combiners(view)?;
@@ -248,7 +304,9 @@ impl Builder {
                     uses_depth: false,
                     uses: 0,
                     has_contents: self.surfaces_in_memory,
-                    is_cleared: false,
+                    is_cleared: [false; 2],
+                    dumped: [None, None],
+                    last_draw: None,
                 });
                 self.known.len() - 1
             }
@@ -386,14 +444,39 @@ impl Builder {
         self.textures.len() - 1
     }
 
+    /// Forgets the images in a range of addresses, which hold others from now on.
+    pub(crate) fn forget_images(&mut self, range: Range<u64>) {
+        self.images.retain(|image, _| {
+            let first = u64::from(image.address);
+            first >= range.end || first + image.bytes() <= range.start
+        });
+    }
+
     /// Returns the frame. Draws that the model refuses are left out, with the reason.
-    pub(crate) fn finish(mut self, memory: &Memory) -> Frame {
-        if self.surfaces_in_memory {
-            for (target, known) in self.targets.iter_mut().zip(&self.known).filter(|(_, known)| !known.is_cleared) {
-                let layout = known.surface.swizzled.map_or(Layout::Pitch(known.surface.pitch), |_| Layout::Swizzled);
-                let (format, size) = (raw(target.format), [target.width, target.height, 1]);
-                target.contents = words(memory, known.surface.color.into(), format, size, layout).map(Into::into);
+    pub(crate) fn finish(mut self, sources: &Sources) -> Frame {
+        let mut held = Vec::new();
+        for (index, (target, known)) in self.targets.iter_mut().zip(&mut self.known).enumerate() {
+            let Surface { color, zeta, .. } = known.surface;
+            let [of_colors, of_depths] = known.is_cleared.map(|is_cleared| self.surfaces_in_memory && !is_cleared);
+            if of_colors {
+                target.contents = known.words(target, Buffer::Color, &sources.memory, color).map(Into::into);
             }
+            if of_depths {
+                target.depth_contents = known.words(target, Buffer::Depth, &sources.memory, zeta).map(Into::into);
+            }
+            let dumped = std::mem::take(&mut known.dumped);
+            let [colors, depths] = dumped.map(|bytes| bytes.map(Memory::new));
+            let words = |memory: Option<Memory>, buffer| known.words(target, buffer, &memory?, 0);
+            let [colors, depths] = [words(colors, Buffer::Color), words(depths, Buffer::Depth)];
+            if let Some(draw) = known.last_draw {
+                let [words, depth] = [Buffer::Color, Buffer::Depth]
+                    .map(|buffer| words(sources.dumps.after(draw, buffer).map(Memory::new), buffer));
+                if words.is_some() || depth.is_some() {
+                    held.push(Held { target: index, draw, words, depth: depth.filter(|_| known.uses_depth) });
+                }
+            }
+            target.contents = colors.map(Into::into).or(target.contents.take());
+            target.depth_contents = depths.map(Into::into).or(target.depth_contents.take());
         }
         let Builder { number, targets, textures, palettes, draws, mut drawn, .. } = self;
         let mut scene = Scene { profile: Profile::Nv2a, targets, textures, palettes, draws };
@@ -410,7 +493,7 @@ impl Builder {
                 break;
             }
         }
-        Frame { number, scene, drawn }
+        Frame { number, scene, drawn, held }
     }
 }
 

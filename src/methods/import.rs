@@ -6,9 +6,12 @@ use ninebit::state::Profile;
 use ninebit_program::registers::Word as RegisterWord;
 
 use crate::class::{self, KELVIN, Treatment};
+use crate::draw::texture::of_unit;
+use crate::dumps::{Dumps, TextureDump};
 use crate::frame::{Builder, Frame};
 use crate::log::{Entry, Event, Fault, Reader, Write};
 use crate::memory::Memory;
+use crate::pgraph;
 use crate::state::{Action, State};
 
 /// The part of a log that becomes scenes.
@@ -21,6 +24,8 @@ pub enum Part {
     Frame(u64),
     /// One draw, numbered from 0.
     Draw(u64),
+    /// Every draw, each as a frame of its own.
+    EachDraw,
 }
 
 /// What an import does.
@@ -30,6 +35,15 @@ pub struct Options {
     pub part: Part,
     /// Whether memory has what surfaces held before the log, in place of what they held after it.
     pub surfaces_in_memory: bool,
+}
+
+/// What a log's draws read and drew, besides its words.
+#[derive(Clone, Debug, Default)]
+pub struct Sources {
+    /// Memory.
+    pub memory: Memory,
+    /// The dumps of a hardware tracer.
+    pub dumps: Dumps,
 }
 
 /// The use of a method in a log.
@@ -93,7 +107,7 @@ impl Summary {
 /// Follows a log.
 pub struct Importer<'a> {
     state: State,
-    memory: &'a Memory,
+    sources: Sources,
     options: Options,
     builder: Builder,
     frame: u64,
@@ -111,9 +125,9 @@ impl std::fmt::Debug for Importer<'_> {
 
 impl<'a> Importer<'a> {
     /// Makes an importer for a log that begins in `state`. `each` takes the frames.
-    pub fn new(state: State, memory: &'a Memory, options: Options, each: &'a mut dyn FnMut(Frame)) -> Importer<'a> {
+    pub fn new(state: State, sources: Sources, options: Options, each: &'a mut dyn FnMut(Frame)) -> Importer<'a> {
         let (builder, summary) = (Builder::new(0, options.surfaces_in_memory), Summary::default());
-        Importer { state, memory, options, builder, frame: 0, draw: 0, line: 0, summary, each }
+        Importer { state, sources, options, builder, frame: 0, draw: 0, line: 0, summary, each }
     }
 
     /// Returns the state as it is now.
@@ -139,9 +153,13 @@ impl<'a> Importer<'a> {
         match self.state.follow(*line, event) {
             Some(Action::Draw(batch)) => {
                 if self.wants() {
-                    self.builder.draw(&self.state, self.memory, &batch, self.draw);
+                    self.take_dumps();
+                    self.builder.draw(&self.state, &self.sources, &batch, self.draw);
                 }
                 self.draw += 1;
+                if self.options.part == Part::EachDraw {
+                    self.hand_over(self.draw);
+                }
             }
             Some(Action::Clear(word))
                 if matches!(self.options.part, Part::All) || self.options.part == Part::Frame(self.frame) =>
@@ -158,17 +176,39 @@ impl<'a> Importer<'a> {
 
     fn wants(&self) -> bool {
         match self.options.part {
-            Part::All => true,
+            Part::All | Part::EachDraw => true,
             Part::Frame(frame) => frame == self.frame,
             Part::Draw(draw) => draw == self.draw,
         }
     }
 
+    /// Takes the dumps of a draw: registers and constants complete the state, and textures go into memory, where the units read them.
+    fn take_dumps(&mut self) {
+        let dumps = &self.sources.dumps;
+        let registers = dumps.registers(self.draw).map(|dump| pgraph::methods(&dump)).unwrap_or_default();
+        self.state.complete(&registers, &dumps.constants(self.draw).unwrap_or_default());
+        for TextureDump { unit, layer, bytes } in self.sources.dumps.textures(self.draw) {
+            let Some(address) = self.state.get(of_unit(class::SET_TEXTURE_OFFSET, unit)) else { continue };
+            let count = bytes.len() as u64;
+            let address = u64::from(address) + u64::from(layer) * count;
+            if self.sources.memory.put(address, bytes) {
+                self.builder.forget_images(address..address + count);
+            }
+        }
+    }
+
     fn flip(&mut self) {
         self.frame += 1;
-        let builder = std::mem::replace(&mut self.builder, Builder::new(self.frame, self.options.surfaces_in_memory));
+        if self.options.part != Part::EachDraw {
+            self.hand_over(self.frame);
+        }
+    }
+
+    /// Ends the frame that is being built, and begins one of this number.
+    fn hand_over(&mut self, next: u64) {
+        let builder = std::mem::replace(&mut self.builder, Builder::new(next, self.options.surfaces_in_memory));
         if !builder.is_empty() {
-            let frame = builder.finish(self.memory);
+            let frame = builder.finish(&self.sources);
             self.summary.frames += 1;
             for drawn in &frame.drawn {
                 if drawn.number.is_some() {
@@ -194,7 +234,8 @@ impl<'a> Importer<'a> {
             }
             self.draw += 1;
         }
-        self.flip();
+        self.frame += 1;
+        self.hand_over(self.frame);
         self.summary.draws = self.draw;
         if let Some(reader) = reader {
             self.summary.unknown_lines = (reader.unknown, reader.first_unknown.clone());
@@ -207,7 +248,8 @@ impl<'a> Importer<'a> {
 pub fn import(text: &[u8], state: State, memory: &Memory, options: Options) -> (Vec<Frame>, Summary) {
     let mut frames = Vec::new();
     let mut each = |frame| frames.push(frame);
-    let mut importer = Importer::new(state, memory, options, &mut each);
+    let sources = Sources { memory: memory.clone(), ..Sources::default() };
+    let mut importer = Importer::new(state, sources, options, &mut each);
     let mut reader = Reader::new();
     reader.feed(text, &mut |entry| importer.take(&entry));
     reader.finish(&mut |entry| importer.take(&entry));

@@ -2,12 +2,14 @@
 
 pub mod class;
 mod draw;
+pub mod dumps;
 pub mod export;
 pub mod frame;
 pub mod gap;
 pub mod import;
 pub mod log;
 pub mod memory;
+pub mod pgraph;
 pub mod pushbuffer;
 pub mod state;
 pub mod vertex;

@@ -1,26 +1,41 @@
 //! An image of the console's memory, and how textures lie in it.
 
-use ninebit::state::{SurfaceFormat, TextureFormat};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use ninebit::state::{DepthFormat, SurfaceFormat, TextureFormat};
 use ninebit_files::texels;
 
 /// Bytes of memory that a console has; development kits have twice as much.
 pub const LARGEST_MEMORY: u64 = 128 << 20;
 
-/// An image of memory from address 0.
+/// An image of memory from address 0, and newer parts of it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Memory {
-    bytes: Vec<u8>,
+    bytes: Arc<[u8]>,
+    parts: BTreeMap<u64, Vec<u8>>,
 }
 
 impl Memory {
     /// Makes memory of an image.
     pub fn new(bytes: Vec<u8>) -> Memory {
-        Memory { bytes }
+        Memory { bytes: bytes.into(), parts: BTreeMap::new() }
+    }
+
+    /// Puts newer bytes at an address. Returns whether memory did not hold them.
+    pub fn put(&mut self, address: u64, bytes: Vec<u8>) -> bool {
+        if self.slice(address, bytes.len() as u64) == Some(&bytes) {
+            return false;
+        }
+        let end = address.saturating_add(bytes.len() as u64);
+        self.parts.retain(|first, part| *first >= end || first.saturating_add(part.len() as u64) <= address);
+        self.parts.insert(address, bytes);
+        true
     }
 
     /// Returns whether there is none.
     pub fn is_empty(&self) -> bool {
-        self.bytes.is_empty()
+        self.bytes.is_empty() && self.parts.is_empty()
     }
 
     /// Returns the number of bytes.
@@ -30,6 +45,12 @@ impl Memory {
 
     /// Returns `count` bytes at an address; `None` if some lie outside.
     pub fn slice(&self, address: u64, count: u64) -> Option<&[u8]> {
+        if let Some((first, part)) = self.parts.range(..=address).next_back()
+            && let Ok(from) = usize::try_from(address - first)
+            && from < part.len()
+        {
+            return part.get(from..from.checked_add(usize::try_from(count).ok()?)?);
+        }
         let (first, end) = (usize::try_from(address).ok()?, usize::try_from(address.checked_add(count)?).ok()?);
         self.bytes.get(first..end)
     }
@@ -120,6 +141,16 @@ pub(crate) fn raw(format: SurfaceFormat) -> TextureFormat {
         4 => TextureFormat::A8R8G8B8,
         2 => TextureFormat::R5G6B5,
         _ => TextureFormat::L8,
+    }
+}
+
+/// Returns the format of textures that has the words of a depth buffer.
+pub(crate) fn raw_depths(format: DepthFormat) -> TextureFormat {
+    match format {
+        DepthFormat::Z16 => TextureFormat::Z16,
+        DepthFormat::Z24S8 => TextureFormat::Z24S8,
+        DepthFormat::Z16F => TextureFormat::Z16F,
+        DepthFormat::Z24S8F => TextureFormat::Z24S8F,
     }
 }
 

@@ -163,6 +163,20 @@ impl State {
         }
     }
 
+    /// Sets what is not known yet: words of methods, and constants of the vertex program.
+    pub fn complete(&mut self, words: &BTreeMap<u32, u32>, constants: &[[u32; 4]]) {
+        for (method, word) in words {
+            if self.get(*method).is_none() {
+                self.words.set(*method as usize / 4, *word);
+            }
+        }
+        for (at, word) in constants.iter().take(CONSTANTS).flatten().enumerate() {
+            if self.constants.words.get(at).is_none() {
+                self.constants.words.set(at, *word);
+            }
+        }
+    }
+
     /// Follows an event of a log. Events of other classes change nothing.
     pub fn follow(&mut self, line: u64, event: &Event) -> Option<Action> {
         match *event {

@@ -1,5 +1,8 @@
 //! The command `ninebit import`: logs of real programs become scenes.
 
+mod chip;
+
+use self::chip::Comparison;
 use super::scene::write_scene;
 use super::*;
 use std::collections::BTreeMap;
@@ -11,10 +14,12 @@ use ninebit_files::output::write_below;
 use ninebit_files::pending::PendingFolder;
 use ninebit_files::read::{self, Kind, ReadError};
 use ninebit_methods::class::{self, KELVIN, Treatment};
+use ninebit_methods::dumps::{Dumps, LOG_FILE};
 use ninebit_methods::frame::Frame;
-use ninebit_methods::import::{Importer, Options, Part, Summary, assume};
+use ninebit_methods::import::{Importer, Options, Part, Sources, Summary, assume};
 use ninebit_methods::log::{Fault, Reader};
 use ninebit_methods::memory::Memory;
+use ninebit_methods::pgraph;
 use ninebit_methods::pushbuffer::{self, Stop};
 use ninebit_methods::state::State;
 use ninebit_report::explain::{explain, explanation_text};
@@ -22,7 +27,8 @@ use ninebit_scene::write::{self, WriteOptions};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// The log, in any of the forms that emulators, hardware tracers and recompilers print; `-` is standard input
+    /// The log, in any of the forms that emulators, hardware tracers and recompilers print; `-` is standard input. Or the folder of a hardware
+    /// tracer: its log and its dumps of textures and surfaces
     #[arg(value_name = "LOG", required_unless_present = "push_buffer")]
     log: Option<PathBuf>,
     /// The folder that is made, with a scene of each frame and what it names
@@ -40,7 +46,10 @@ pub(crate) struct Arguments {
     /// Words of a push buffer in the memory, from one address to another, in place of a log
     #[arg(long, value_name = "FIRST..END", requires = "memory", conflicts_with = "log", value_parser = addresses)]
     push_buffer: Option<(u64, u64)>,
-    /// State before the first line: another log, whose draws are left out
+    /// A scene of each draw, in place of each frame. With the dumps of a hardware tracer each begins as the chip's surface was
+    #[arg(long, conflicts_with_all = ["frame", "draw"])]
+    each_draw: bool,
+    /// State before the first line: another log, whose draws are left out; or the 8 KiB of PGRAPH's registers
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
     /// State that you know and no log has: a method's name and its word a line, `SET_COLOR_MASK 0x01010101`
@@ -72,6 +81,13 @@ fn addresses(text: &str) -> Result<(u64, u64), String> {
 
 /// Imports a log.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
+    let (log, dumps) = match &arguments.log {
+        Some(folder) if folder.is_dir() => {
+            let unreadable = |error: std::io::Error| unreadable(folder, error.into());
+            (Some(folder.join(LOG_FILE)), Dumps::open(folder).map_err(unreadable)?)
+        }
+        log => (log.clone(), Dumps::default()),
+    };
     let memory = match &arguments.memory {
         Some(path) => {
             Memory::new(read::bytes(path, Kind::Regular, MEMORY_IMAGE).map_err(|error| unreadable(path, error))?)
@@ -81,6 +97,10 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let mut state = State::default();
     for path in [&arguments.state, &arguments.assume].into_iter().flatten() {
         let bytes = read::bytes(path, Kind::Stream, LOG).map_err(|error| unreadable(path, error))?;
+        if bytes.len() == pgraph::DUMP_BYTES && bytes.contains(&0) {
+            pgraph::methods(&bytes).into_iter().for_each(|(method, word)| state.assume(method, word));
+            continue;
+        }
         assume(&mut state, &String::from_utf8_lossy(&bytes)).map_err(|error| {
             let message =
                 format!("`{}`, line {}: `{}` sets no state", shown::path(path), error.line, shown::name(&error.text));
@@ -94,6 +114,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let part = match (arguments.frame, arguments.draw) {
         (Some(frame), _) => Part::Frame(frame),
         (None, Some(draw)) => Part::Draw(draw),
+        (None, None) if arguments.each_draw => Part::EachDraw,
         (None, None) => Part::All,
     };
     let options = Options { part, surfaces_in_memory: arguments.surfaces_in_memory };
@@ -101,12 +122,15 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let mut out = Out {
         folder: folder.as_ref(),
         explanation: arguments.explain.then(String::new),
+        kind: if part == Part::EachDraw { "draw" } else { "frame" },
         failure: None,
         written: Vec::new(),
+        compared: Vec::new(),
     };
     let mut each = |frame: Frame| out.take(&frame);
-    let summary = follow(arguments, state, &memory, options, &mut each)?;
-    let Out { explanation, failure, written, .. } = out;
+    let sources = Sources { memory, dumps };
+    let summary = follow((arguments, log.as_deref()), state, sources, options, &mut each)?;
+    let Out { explanation, failure, written, compared, .. } = out;
     if let Some(failure) = failure {
         return Err(failure);
     }
@@ -120,14 +144,14 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         write_text(&explanation)?;
     }
     if let Some(folder) = folder {
-        let text = summary_text(&summary, &written);
+        let text = summary_text(&summary, &written, &compared);
         write_below(&folder.path().join("import.txt"), text.as_bytes())?;
         folder.commit()?;
         if !arguments.explain {
             write_text(&text)?;
         }
     } else {
-        write_text(&summary_text(&summary, &[]))?;
+        write_text(&summary_text(&summary, &[], &compared))?;
     }
     warn(&summary, context);
     Ok(())
@@ -157,15 +181,16 @@ fn unreadable(path: &Path, error: ReadError) -> Failure {
 
 /// Follows the log or the push buffer to its end.
 fn follow(
-    arguments: &Arguments,
+    (arguments, log): (&Arguments, Option<&Path>),
     state: State,
-    memory: &Memory,
+    sources: Sources,
     options: Options,
     each: &mut dyn FnMut(Frame),
 ) -> Result<Summary, Failure> {
-    let mut importer = Importer::new(state, memory, options, each);
+    let memory = sources.memory.clone();
+    let mut importer = Importer::new(state, sources, options, each);
     if let Some((first, end)) = arguments.push_buffer {
-        let stop = pushbuffer::follow(memory, first, end, &mut |entry| importer.take(&entry));
+        let stop = pushbuffer::follow(&memory, first, end, &mut |entry| importer.take(&entry));
         stop.map_err(|stop| {
             let (message, help) = match stop {
                 Stop::Outside(at) => (
@@ -184,7 +209,7 @@ fn follow(
         })?;
         return Ok(importer.finish(None));
     }
-    let Some(path) = &arguments.log else { return Ok(importer.finish(None)) };
+    let Some(path) = log else { return Ok(importer.finish(None)) };
     let mut reader = Reader::new();
     let mut take = |part: &[u8]| reader.feed(part, &mut |entry| importer.take(&entry));
     if path == Path::new("-") {
@@ -208,31 +233,37 @@ fn follow(
 struct Out<'a> {
     folder: Option<&'a PendingFolder>,
     explanation: Option<String>,
+    /// What a scene is: `frame` or `draw`.
+    kind: &'static str,
     failure: Option<Failure>,
     /// Names of the scenes, and whether they are complete.
     written: Vec<(String, bool)>,
+    /// What the comparisons with the chip's surfaces say, and whether they are exact.
+    compared: Vec<(String, bool)>,
 }
 
 impl Out<'_> {
     fn take(&mut self, frame: &Frame) {
         if let Some(text) = &mut self.explanation {
-            explain_frame(text, frame);
+            explain_frame(text, self.kind, frame);
         }
+        let comparisons = chip::compare(frame, &format!("{} {}", self.kind, frame.number));
+        self.compared.extend(comparisons.iter().map(|comparison| (comparison.to_string(), comparison.is_exact())));
         if self.failure.is_none()
-            && let Err(failure) = self.write(frame)
+            && let Err(failure) = self.write(frame, comparisons.first())
         {
             self.failure = Some(failure);
         }
     }
 
-    fn write(&mut self, frame: &Frame) -> Result<(), Failure> {
+    fn write(&mut self, frame: &Frame, chip: Option<&Comparison>) -> Result<(), Failure> {
         let Some(output) = self.folder else { return Ok(()) };
         if frame.scene.targets.is_empty() {
             return Ok(());
         }
-        let stem = format!("frame-{:04}", frame.number);
+        let stem = format!("{}-{:04}", self.kind, frame.number);
         let mut comments = vec![Vec::new(); frame.scene.draws.len()];
-        let mut head = vec![format!("Frame {}: imported from a log of methods.", frame.number)];
+        let mut head = vec![format!("Imported from a log of methods: {} {}.", self.kind, frame.number)];
         for drawn in &frame.drawn {
             let gaps = drawn.gaps.iter().map(|gap| format!("incomplete: {gap}"));
             match drawn.draw {
@@ -247,21 +278,27 @@ impl Out<'_> {
             let help = "import one of its draws with `--draw`";
             Failure {
                 exit: Exit::Limit,
-                ..Failure::invalid("NB1606", format!("frame {}: {error}", frame.number), help)
+                ..Failure::invalid("NB1606", format!("{} {}: {error}", self.kind, frame.number), help)
             }
         })?;
         write_scene(output.path(), &stem, &files)?;
+        if let Some(chip) = chip {
+            let picture = format!("{stem}/chip.png");
+            write_below(&output.path().join(&picture), &chip.picture()?)?;
+            let text = chip.expectation(picture).to_text();
+            write_below(&output.path().join(format!("{stem}.expect.ron")), text.as_bytes())?;
+        }
         self.written.push((format!("{stem}.ron"), frame.is_complete()));
         Ok(())
     }
 }
 
 /// Prints what each draw of a frame does.
-fn explain_frame(out: &mut String, frame: &Frame) {
+fn explain_frame(out: &mut String, kind: &str, frame: &Frame) {
     let plan = Plan::compile(&frame.scene, &PlanOptions::default()).ok();
     let explained = plan.as_ref().map(|plan| (plan, explain(&frame.scene, plan)));
     // Writing to a string cannot fail.
-    let _ = writeln!(out, "frame {}", frame.number);
+    let _ = writeln!(out, "{kind} {}", frame.number);
     for drawn in &frame.drawn {
         let _ = writeln!(out, "\n{}", drawn.name);
         for gap in &drawn.gaps {
@@ -277,7 +314,7 @@ fn explain_frame(out: &mut String, frame: &Frame) {
 }
 
 /// Writes the counts of an import.
-fn summary_text(summary: &Summary, written: &[(String, bool)]) -> String {
+fn summary_text(summary: &Summary, written: &[(String, bool)], compared: &[(String, bool)]) -> String {
     let mut out = String::new();
     for (name, complete) in written {
         let _ = writeln!(out, "{name}{}", if *complete { "" } else { "  incomplete" });
@@ -287,6 +324,11 @@ fn summary_text(summary: &Summary, written: &[(String, bool)]) -> String {
         "frames {}, draws {}; of {} that were asked for {} are complete",
         summary.frames, summary.draws, summary.stated, summary.complete
     );
+    if !compared.is_empty() {
+        let exact = compared.iter().filter(|(_, is_exact)| *is_exact).count();
+        let _ = writeln!(out, "surfaces compared with the chip's: {}, exact {exact}", compared.len());
+        compared.iter().filter(|(_, is_exact)| !is_exact).for_each(|(text, _)| _ = writeln!(out, "  {text}"));
+    }
     for (kind, count) in &summary.gaps {
         let _ = writeln!(out, "  {count:>6}  {kind}");
     }

@@ -24,6 +24,8 @@ pub(crate) struct Surface {
     pub swizzled: Option<[u32; 2]>,
     /// Bytes from row to row of the colours.
     pub pitch: u32,
+    /// Bytes from row to row of the depths.
+    pub zeta_pitch: u32,
 }
 
 /// Reads the surfaces; `None` if the model has no such ones, which is noted.
@@ -49,7 +51,8 @@ pub(crate) fn surface(view: &mut View<'_>) -> Option<Surface> {
     let ((x, width), (y, height)) = (axis(class::SET_SURFACE_CLIP_HORIZONTAL), axis(class::SET_SURFACE_CLIP_VERTICAL));
     let clip = Rectangle { x, y, width, height };
     let (color, zeta) = (view.get(class::SET_SURFACE_COLOR_OFFSET), view.get_or(class::SET_SURFACE_ZETA_OFFSET, 0));
-    let pitch = view.get_or(class::SET_SURFACE_PITCH, 0) & 0xffff;
+    let pitches = view.get_or(class::SET_SURFACE_PITCH, 0);
+    let (pitch, zeta_pitch) = (pitches & 0xffff, pitches >> 16);
     let Some(format) = format else {
         view.bad(class::SET_SURFACE_FORMAT);
         return None;
@@ -59,7 +62,7 @@ pub(crate) fn surface(view: &mut View<'_>) -> Option<Surface> {
         view.note(Gap::NotModelled(what));
         return None;
     }
-    Some(Surface { color, format, zeta, depth, clip, swizzled, pitch })
+    Some(Surface { color, format, zeta, depth, clip, swizzled, pitch, zeta_pitch })
 }
 
 impl Surface {

@@ -184,6 +184,24 @@ impl Image {
         (0..self.levels).map(|level| self.level_bytes(level)).sum()
     }
 
+    /// Returns the bytes from its first to its last, at most; a pitch has rows of that many.
+    pub(crate) fn bytes(&self) -> u64 {
+        let faces = if self.kind == TextureKind::Cube { u64::from(CUBE_FACES) } else { 1 };
+        match self.pitch {
+            Some(pitch) => u64::from(pitch) * u64::from(self.size[1]),
+            None if self.border => {
+                let [width, height] = self.stored().map(u64::from);
+                width * height * u64::from(self.format.bytes())
+            }
+            None => faces * self.face_bytes().next_multiple_of(FACE_BYTES),
+        }
+    }
+
+    /// Returns columns and rows in memory of an image with border texels.
+    fn stored(&self) -> [u32; 2] {
+        [self.size[0], self.size[1]].map(|side| (2 * side).max(BORDERED_SIDE))
+    }
+
     /// Returns columns, rows and layers of a level.
     pub(crate) fn level(&self, level: u32) -> [u32; 3] {
         self.size.map(|side| (side >> level).max(1))
@@ -212,8 +230,8 @@ impl Image {
             if self.kind != TextureKind::TwoDimensional || self.format.is_compressed() || self.levels > 1 {
                 return Err(Gap::NotModelled(format!("border texels of {}", what())));
             }
-            // The image is twice as large; the texture begins at the fourth texel.
-            let stored = [width, height].map(|side| (2 * side).max(BORDERED_SIDE));
+            // The texture begins at the fourth texel.
+            let stored = self.stored();
             let words = memory::words(memory, self.address.into(), self.format, [stored[0], stored[1], 1], layout);
             let words = words.ok_or_else(outside)?;
             let [columns, rows] = [width, height].map(|side| side + 2 * BORDER_TEXELS);

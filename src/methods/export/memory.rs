@@ -1,10 +1,14 @@
 //! The places of surfaces, textures and palettes in memory.
 
-use ninebit::state::{CUBE_FACES, Palette, Scene, Texels, Texture, TextureImage, TextureKind};
+use std::sync::Arc;
+
+use ninebit::state::{
+    CUBE_FACES, DepthFormat, Palette, Scene, Texels, Texture, TextureFormat, TextureImage, TextureKind,
+};
 
 use super::{ExportError, refuse};
 use crate::draw::texture::{BORDERED_SIDE, FACE_BYTES};
-use crate::memory::{LARGEST_MEMORY, Layout, bytes, raw};
+use crate::memory::{LARGEST_MEMORY, Layout, bytes, raw, raw_depths};
 
 /// Where the first thing lies.
 const FIRST: u32 = 0x0010_0000;
@@ -51,21 +55,18 @@ impl MemoryMap {
             }
         }
         for (index, target) in scene.targets.iter().enumerate() {
-            let colors = pitch(target.width, target.format.bytes()) * target.height;
-            let mut image = vec![0; colors as usize];
-            if let Some(words) = &target.contents {
-                let layout = if placed.swizzled[index] {
-                    Layout::Swizzled
-                } else {
-                    Layout::Pitch(pitch(target.width, target.format.bytes()))
-                };
-                let contents = bytes(words, raw(target.format), [target.width, target.height, 1], layout);
-                image[..contents.len()].copy_from_slice(&contents);
-            }
-            let at = placed.put(&image)?;
-            placed.surfaces.push(at);
-            let at = placed.reserve(pitch(target.width, 4) * target.height, &[])?;
-            placed.depths.push(at);
+            let size = [target.width, target.height, 1];
+            let is_swizzled = placed.swizzled[index];
+            let mut put = |words: &Option<Arc<[u32]>>, format: TextureFormat, pitch: u32| {
+                let layout = if is_swizzled { Layout::Swizzled } else { Layout::Pitch(pitch) };
+                let image = words.as_ref().map_or(Vec::new(), |words| bytes(words, format, size, layout));
+                placed.reserve(pitch * target.height, &image)
+            };
+            let colors = put(&target.contents, raw(target.format), pitch(target.width, target.format.bytes()))?;
+            let format = target.depth.map_or(DepthFormat::Z24S8, |depth| depth.format);
+            let depths = put(&target.depth_contents, raw_depths(format), pitch(target.width, 4))?;
+            placed.surfaces.push(colors);
+            placed.depths.push(depths);
         }
         for texture in &scene.textures {
             let at = match &texture.image {

@@ -48,7 +48,7 @@ pub(super) fn clear(words: &mut Words, placed: &MemoryMap, index: usize, target:
         words.set(class::SET_COLOR_CLEAR_VALUE, rop::surface::pack(target.format, target.clear_color));
         parts |= 0xf0;
     }
-    if let Some(depth) = target.depth {
+    if let Some(depth) = target.depth.filter(|_| target.depth_contents.is_none()) {
         let word =
             if depth.format.has_stencil() { depth.clear << 8 | u32::from(depth.clear_stencil) } else { depth.clear };
         words.set(class::SET_ZSTENCIL_CLEAR_VALUE, word);

@@ -8,7 +8,7 @@ use ninebit::state::*;
 use ninebit_methods::class;
 use ninebit_methods::export::{Methods, export, push_buffer, trace};
 use ninebit_methods::frame::Frame;
-use ninebit_methods::import::{Importer, Options, import};
+use ninebit_methods::import::{Importer, Options, Sources, import};
 use ninebit_methods::memory::Memory;
 use ninebit_methods::pushbuffer::follow;
 use ninebit_methods::state::State;
@@ -113,7 +113,8 @@ fn damaged_logs_do_no_harm() {
         }
         let memory = Memory::new(bytes);
         let mut each = |frame: Frame| check(&frame);
-        let mut importer = Importer::new(State::default(), &memory, Options::default(), &mut each);
+        let sources = Sources { memory: memory.clone(), ..Sources::default() };
+        let mut importer = Importer::new(State::default(), sources, Options::default(), &mut each);
         let _ = follow(&memory, 0, memory.len() as u64, &mut |entry| importer.take(&entry));
         importer.finish(None);
     }
