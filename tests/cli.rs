@@ -206,6 +206,16 @@ fn programs_are_printed_as_functions() {
     bench.run("lower --generic --to wgsl").failed(2, "no generic text");
     bench.run("lower --generic --to glsl -o vendor").failed(2, "stdout");
     bench.run("lower --generic lit.words --to c99").failed(2, "cannot be used with");
+    for (form, function) in
+        [("c99", "static inline int ninebit_draw0("), ("glsl", "bool ninebit_draw0("), ("wgsl", "fn ninebit_draw0(")]
+    {
+        let whole = bench.run(&format!("lower lit-words-file.ron --whole --to {form}")).text();
+        assert!(whole.contains(function) && whole.contains("ninebit_covers("), "{whole}");
+    }
+    bench.run("lower lit-words-file.ron --whole --to verilog").failed(2, "take `--to c99`");
+    bench.run("lower lit.words --whole --to c99").failed(2, "a program alone");
+    let refused = at("vectors/scenes/texture-shader/mirror-ball.ron");
+    bench.run(&format!("lower {} --whole --to c99", refused.display())).failed(3, "a texture shader");
     bench.run("registers gone.words").failed(4, "NB0502");
     assert!(bench.run("registers lit.words --profile nv10").text().contains("0c040220"));
 }

@@ -239,7 +239,7 @@ proptest! {
         let scaled = parts.map(|x| x.map(|x| x * 2.0_f32.powi(power)));
         let sample = Sample::new(&triangle, e);
         let [a, b] = [parts, scaled].map(|parts| parts.map(|x| sample.value(&Linear::new(x))));
-        for size in [1 << bits, 7 * (bits + 1)] {
+        for size in [1 << bits, 7 * (i64::from(bits) + 1)] {
             for n in 0..2 {
                 prop_assert_eq!(ratio(a[n], a[2], size), ratio(b[n], b[2], size));
                 prop_assert_eq!(face_coordinate(a[n], a[2], size, 8), face_coordinate(b[n], b[2], size, 8));

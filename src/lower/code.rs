@@ -6,173 +6,10 @@ use std::collections::HashMap;
 use ninebit::state::CompareFunction;
 
 use crate::input::Input;
-
-/// A value: a constant, or the result of an earlier line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Operand {
-    /// A constant, the same in every pixel.
-    Constant(i64),
-    /// The result of the line with this index.
-    Line(u32),
-}
-
-impl Operand {
-    /// Returns the index of the line that the value is the result of; `None` if it is a constant.
-    pub(crate) fn line(self) -> Option<usize> {
-        match self {
-            Operand::Constant(_) => None,
-            Operand::Line(line) => Some(line as usize),
-        }
-    }
-}
-
-/// Kind of a value: a number, or the bits of a stored word or texel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Kind {
-    /// Two's complement, within 32 bits.
-    Number,
-    /// 32 bits without a sign.
-    Word,
-}
-
-/// A comparison of two numbers; the first operand is on the left.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Test(pub CompareFunction, pub [Operand; 2]);
-
-/// The operation of a line, which computes a value.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Operation {
-    /// A value that the caller gives.
-    Input(Input),
-    /// a + b.
-    Add(Operand, Operand),
-    /// a - b.
-    Subtract(Operand, Operand),
-    /// a times b.
-    Multiply(Operand, Operand),
-    /// The smaller of a and b.
-    Least(Operand, Operand),
-    /// The larger of a and b.
-    Greatest(Operand, Operand),
-    /// The whole part of a / b, where a is not negative and b is a constant.
-    Quotient(Operand, i64),
-    /// The bits of a that a constant mask has, where a is not negative.
-    Bits(Operand, i64),
-    /// a with one bit inverted, where a is not negative and less than twice that bit.
-    Flip(Operand, i64),
-    /// The first value if the test holds, otherwise the second.
-    Select(Test, [Operand; 2]),
-    /// A word below 2^31, as a number.
-    Number(Operand),
-    /// A number that is not negative, as a word.
-    Word(Operand),
-    /// Bitwise and of two words.
-    And(Operand, Operand),
-    /// Bitwise or of two words.
-    Or(Operand, Operand),
-    /// Product of two words, which is below 2^32.
-    Times(Operand, Operand),
-    /// A word shifted right by a constant.
-    Down(Operand, u32),
-    /// A word shifted left by a constant; the result is below 2^32.
-    Up(Operand, u32),
-}
-
-/// Collects the operands that `renamed` passes to the function it is given.
-pub(crate) fn collected(renamed: impl FnOnce(&mut dyn FnMut(Operand) -> Operand)) -> Vec<Operand> {
-    let mut operands = Vec::new();
-    renamed(&mut |operand| {
-        operands.push(operand);
-        operand
-    });
-    operands
-}
-
-impl Operation {
-    /// Returns the kind of the result.
-    pub(crate) fn kind(&self) -> Kind {
-        match self {
-            Operation::Input(input) => input.kind(),
-            Operation::Word(_)
-            | Operation::And(..)
-            | Operation::Or(..)
-            | Operation::Times(..)
-            | Operation::Down(..)
-            | Operation::Up(..) => Kind::Word,
-            _ => Kind::Number,
-        }
-    }
-
-    /// Returns the kind of the operands.
-    pub(crate) fn takes(&self) -> Kind {
-        match self {
-            Operation::Number(_) => Kind::Word,
-            Operation::Word(_) => Kind::Number,
-            _ => self.kind(),
-        }
-    }
-
-    /// Returns the operands.
-    pub(crate) fn operands(&self) -> Vec<Operand> {
-        collected(|name| _ = self.renamed(name))
-    }
-
-    /// Returns the operation with each operand replaced by `name` of it.
-    pub(crate) fn renamed(self, mut name: impl FnMut(Operand) -> Operand) -> Operation {
-        match self {
-            Operation::Input(_) => self,
-            Operation::Add(a, b) => Operation::Add(name(a), name(b)),
-            Operation::Subtract(a, b) => Operation::Subtract(name(a), name(b)),
-            Operation::Multiply(a, b) => Operation::Multiply(name(a), name(b)),
-            Operation::Least(a, b) => Operation::Least(name(a), name(b)),
-            Operation::Greatest(a, b) => Operation::Greatest(name(a), name(b)),
-            Operation::Quotient(a, by) => Operation::Quotient(name(a), by),
-            Operation::Bits(a, mask) => Operation::Bits(name(a), mask),
-            Operation::Flip(a, bit) => Operation::Flip(name(a), bit),
-            Operation::Select(Test(function, operands), values) => {
-                Operation::Select(Test(function, operands.map(&mut name)), values.map(name))
-            }
-            Operation::Number(a) => Operation::Number(name(a)),
-            Operation::Word(a) => Operation::Word(name(a)),
-            Operation::And(a, b) => Operation::And(name(a), name(b)),
-            Operation::Or(a, b) => Operation::Or(name(a), name(b)),
-            Operation::Times(a, b) => Operation::Times(name(a), name(b)),
-            Operation::Down(a, bits) => Operation::Down(name(a), bits),
-            Operation::Up(a, bits) => Operation::Up(name(a), bits),
-        }
-    }
-
-    /// Computes the result from the values of the operands. The result of an input is 0, since the caller knows it.
-    fn of(&self, value: impl Fn(Operand) -> i64) -> i64 {
-        match *self {
-            Operation::Input(_) => 0,
-            Operation::Add(a, b) => value(a) + value(b),
-            Operation::Subtract(a, b) => value(a) - value(b),
-            Operation::Multiply(a, b) | Operation::Times(a, b) => value(a) * value(b),
-            Operation::Least(a, b) => value(a).min(value(b)),
-            Operation::Greatest(a, b) => value(a).max(value(b)),
-            Operation::Quotient(a, by) => value(a).div_euclid(by),
-            Operation::Bits(a, mask) => value(a) & mask,
-            Operation::Flip(a, bit) => value(a) ^ bit,
-            Operation::Select(Test(function, [a, b]), [c, d]) => {
-                value(if function.passes(value(a), value(b)) { c } else { d })
-            }
-            Operation::Number(a) | Operation::Word(a) => value(a),
-            Operation::And(a, b) => value(a) & value(b),
-            Operation::Or(a, b) => value(a) | value(b),
-            Operation::Down(a, bits) => value(a) >> bits,
-            Operation::Up(a, bits) => value(a) << bits,
-        }
-    }
-}
-
-/// The least and the largest value of a range, both inclusive.
-pub type Range = (i64, i64);
-
-/// Returns the range that encloses all ranges.
-pub(crate) fn enclosing(ranges: impl Iterator<Item = Range>) -> Range {
-    ranges.fold((i64::MAX, i64::MIN), |all, one| (all.0.min(one.0), all.1.max(one.1)))
-}
+pub(crate) use crate::kind::{ANY_BINARY, EXPONENT, MANTISSA, enclosing};
+pub use crate::kind::{Kind, Range, packed};
+pub use crate::operation::{Operand, Operation, Test};
+pub(crate) use crate::operation::{Table, collected};
 
 /// A line of code: an operation and what is known of its result.
 #[derive(Clone, Debug)]
@@ -246,6 +83,17 @@ impl Code {
         }
     }
 
+    /// Narrows the range of a value, and of what it is a sum or quotient of with a constant.
+    pub(crate) fn narrow_all(&self, operand: Operand, (low, high): Range) {
+        self.narrow(operand, (low, high));
+        match self.operation(operand) {
+            Some(Operation::Add(a, Operand::Constant(c))) => self.narrow_all(a, (low - c, high - c)),
+            Some(Operation::Subtract(a, Operand::Constant(c))) => self.narrow_all(a, (low + c, high + c)),
+            Some(Operation::Quotient(a, by)) => self.narrow_all(a, (low * by, high * by + by - 1)),
+            _ => {}
+        }
+    }
+
     /// Returns the range of a value.
     pub(crate) fn range(&self, operand: Operand) -> Range {
         match operand {
@@ -262,7 +110,9 @@ impl Code {
     /// Returns the result of an operation: that of a simpler or an existing line if it is equal, otherwise that of a new line.
     pub(crate) fn make(&self, operation: Operation) -> Operand {
         let constant = |operand: &Operand| matches!(operand, Operand::Constant(_));
-        if !matches!(operation, Operation::Input(_)) && operation.operands().iter().all(constant) {
+        let is_known = !matches!(operation.kind(), Kind::Binary)
+            && !matches!(operation, Operation::Input(_) | Operation::Fetch(..));
+        if is_known && operation.operands().iter().all(constant) {
             return Operand::Constant(operation.of(|operand| value_of(&[], operand)));
         }
         let operation = match self.simpler(operation) {
@@ -332,7 +182,7 @@ impl Code {
             Operation::Greatest(a, b) if range(a).0 >= range(b).1 => return Ok(a),
             Operation::Greatest(a, b) if range(b).0 >= range(a).1 => return Ok(b),
             Operation::Bits(a, mask) | Operation::And(a, Constant(mask)) | Operation::And(Constant(mask), a)
-                if (mask + 1) & mask == 0 && range(a).1 <= mask =>
+                if (mask + 1) & mask == 0 && range(a).0 >= 0 && range(a).1 <= mask =>
             {
                 return Ok(a);
             }
@@ -349,6 +199,21 @@ impl Code {
             },
             // Where 8 bits are repeated, nothing remains of the second copy.
             Operation::Down(a, bits) if range(a).1 >> bits == 0 => return Ok(Constant(0)),
+            Operation::Raise(a, Constant(0)) | Operation::Lower(a, Constant(0)) | Operation::Divide(a, Constant(1)) => {
+                return Ok(a);
+            }
+            Operation::Raise(Constant(0), _) => return Ok(Constant(0)),
+            Operation::Mantissa(a) | Operation::Exponent(a) => {
+                if let Some(Operation::Binary(mantissa, exponent)) = self.operation(a) {
+                    return Ok(if matches!(operation, Operation::Mantissa(_)) { mantissa } else { exponent });
+                }
+            }
+            Operation::Choose(_, [c, d]) if c == d => return Ok(c),
+            Operation::Choose(test, [c, d]) => {
+                if let Some(holds) = self.decided(test) {
+                    return Ok(if holds { c } else { d });
+                }
+            }
             _ => {}
         }
         Err(operation)
@@ -390,27 +255,29 @@ impl Code {
 
     fn range_of(&self, operation: &Operation) -> Range {
         let range = |operand: Operand| self.range(operand);
-        // The range of an operation that is monotone in each operand.
-        let corners = |a: Range, b: Range| {
-            let of = |a: i64, b: i64| {
-                let operands = operation.operands();
-                operation.of(|operand| if operand == operands[0] { a } else { b })
-            };
-            let all = if operation.operands()[0] == operation.operands()[1] {
-                vec![of(a.0, a.0), of(a.1, a.1), if a.0 < 0 && a.1 > 0 { of(0, 0) } else { of(a.0, a.0) }]
-            } else {
-                vec![of(a.0, b.0), of(a.0, b.1), of(a.1, b.0), of(a.1, b.1)]
-            };
-            enclosing(all.into_iter().map(|value| (value, value)))
+        // A product or a sum that does not fit is not used.
+        let wide = |of: &dyn Fn(i128, i128) -> i128, a: Range, b: Range| {
+            let all = [(a.0, b.0), (a.0, b.1), (a.1, b.0), (a.1, b.1)];
+            enclosing(
+                all.into_iter()
+                    .map(|(a, b)| of(a.into(), b.into()).clamp(i64::MIN.into(), i64::MAX.into()) as i64)
+                    .map(|n| (n, n)),
+            )
         };
         match *operation {
             Operation::Input(input) => input.range(),
-            Operation::Add(a, b) => (range(a).0 + range(b).0, range(a).1 + range(b).1),
-            Operation::Subtract(a, b) => (range(a).0 - range(b).1, range(a).1 - range(b).0),
-            Operation::Multiply(a, b) | Operation::Times(a, b) => corners(range(a), range(b)),
+            Operation::Add(a, b) => wide(&|a, b| a + b, range(a), range(b)),
+            Operation::Subtract(a, b) => wide(&|a, b| a - b, range(a), range(b)),
+            Operation::Multiply(a, b) | Operation::Times(a, b) if a == b => {
+                let (low, high) = range(a);
+                let least = 0.clamp(low, high);
+                enclosing([low, least, high].into_iter().map(|n| wide(&|a, b| a * b, (n, n), (n, n))))
+            }
+            Operation::Multiply(a, b) | Operation::Times(a, b) => wide(&|a, b| a * b, range(a), range(b)),
             Operation::Least(a, b) => (range(a).0.min(range(b).0), range(a).1.min(range(b).1)),
             Operation::Greatest(a, b) => (range(a).0.max(range(b).0), range(a).1.max(range(b).1)),
             Operation::Quotient(a, by) => (range(a).0.div_euclid(by), range(a).1.div_euclid(by)),
+            Operation::Bits(a, mask) if range(a).0 < 0 => (0, mask),
             Operation::Bits(a, mask) => (0, mask.min(range(a).1)),
             Operation::Flip(_, bit) => (0, 2 * bit - 1),
             Operation::And(a, b) => (0, range(a).1.min(range(b).1)),
@@ -422,33 +289,67 @@ impl Code {
             Operation::Number(a) | Operation::Word(a) => range(a),
             Operation::Down(a, bits) => (range(a).0 >> bits, range(a).1 >> bits),
             Operation::Up(a, bits) => (range(a).0 << bits, range(a).1 << bits),
+            Operation::Length(a) => (bits_of(range(a).0.max(0)), bits_of(range(a).1)),
+            Operation::Raise(a, by) => match wide(&|a, by| a << by.clamp(0, 63), range(a), range(by)) {
+                // What does not fit wraps.
+                (low, high) if low == i64::MIN || high == i64::MAX => (i64::MIN, i64::MAX),
+                fits => fits,
+            },
+            Operation::Lower(a, by) => wide(&|a, by| a >> by.clamp(0, 63), range(a), range(by)),
+            Operation::Mask(_, by) => (0, range(by).1),
+            Operation::Divide(a, by) => wide(&|a, by| a / by.max(1), range(a), range(by)),
+            Operation::Entry(Table(table), _) => {
+                enclosing(table.iter().map(|entry| ((*entry).into(), (*entry).into())))
+            }
+            Operation::Fetch(..) | Operation::Difference(..) => (0, u32::MAX.into()),
+            Operation::Mantissa(_) => MANTISSA,
+            Operation::Exponent(_) => EXPONENT,
+            Operation::Binary(..) | Operation::Choose(..) => ANY_BINARY,
+            Operation::Call(helper, _) => helper.range(),
         }
     }
 }
 
-/// Runs all lines, and returns their results. `input` returns the values of inputs.
+fn bits_of(n: i64) -> i64 {
+    (64 - n.leading_zeros()).into()
+}
+
+/// What a function is given while it runs: a closure gives inputs, and memories of zeros.
+pub trait Given {
+    /// Returns the value of an input.
+    fn input(&mut self, input: Input) -> i64;
+    /// Returns a word of a unit's memory.
+    fn word(&mut self, _unit: usize, _at: i64) -> u32 {
+        0
+    }
+}
+
+impl<F: FnMut(Input) -> i64> Given for F {
+    fn input(&mut self, input: Input) -> i64 {
+        self(input)
+    }
+}
+
+/// Runs all lines, and returns their results.
 ///
 /// # Panics
 /// In debug builds, if a result is outside its range.
-pub fn run(lines: &[Line], input: impl FnMut(Input) -> i64) -> Vec<i64> {
-    run_changed(lines, input, |line, value| {
+pub fn run(lines: &[Line], given: impl Given) -> Vec<i64> {
+    run_changed(lines, given, |line, value| {
         let Line { range, .. } = &lines[line];
-        debug_assert!((range.0..=range.1).contains(&value), "{value} of {:?}", lines[line]);
+        debug_assert!((range.0..=range.1).contains(&value), "{value} of line {line} {:?}", lines[line]);
         value
     })
 }
 
 /// Runs all lines like [`run`], with each result replaced by `change` of its line's index and value, to find what depends on it. Ranges are not
 /// checked.
-pub fn run_changed(
-    lines: &[Line],
-    mut input: impl FnMut(Input) -> i64,
-    mut change: impl FnMut(usize, i64) -> i64,
-) -> Vec<i64> {
+pub fn run_changed(lines: &[Line], mut given: impl Given, mut change: impl FnMut(usize, i64) -> i64) -> Vec<i64> {
     let mut values: Vec<i64> = Vec::with_capacity(lines.len());
     for (n, line) in lines.iter().enumerate() {
         let value = match line.operation {
-            Operation::Input(given) => input(given),
+            Operation::Input(input) => given.input(input),
+            Operation::Fetch(unit, at) => given.word(unit, value_of(&values, at)).into(),
             operation => operation.of(|operand| value_of(&values, operand)),
         };
         values.push(change(n, value));

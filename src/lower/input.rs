@@ -1,6 +1,7 @@
 //! The inputs of a printed function.
 
-use crate::code::{Kind, Range};
+use crate::kind::{Kind, Range};
+use crate::triangle::{Attribute, Field};
 
 /// An input: a number that a pixel or a draw provides. Channels are R, G, B, A.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -35,6 +36,18 @@ pub enum Input {
     BorderColor(usize, usize),
     /// A local variable of the printed text.
     Local(Local),
+    /// The column of the pixel.
+    X,
+    /// The row of the pixel.
+    Y,
+    /// The word that the surface holds, of a whole pixel.
+    Held,
+    /// The word of the depth buffer: depth, and stencil in the upper byte.
+    Depth,
+    /// A constant of the triangle.
+    Triangle(Field),
+    /// What a vertex has: number of the vertex and what.
+    Vertex(usize, Attribute),
 }
 
 /// A local variable of the printed text.
@@ -78,8 +91,11 @@ impl Input {
     pub(crate) fn range(self) -> Range {
         match self {
             Input::Texture(..) => (-256, 255),
-            Input::Texel(..) | Input::Destination => (0, 0xffff_ffff),
+            Input::Texel(..) | Input::Destination | Input::Held | Input::Depth => (0, 0xffff_ffff),
             Input::Local(local) => local.range,
+            Input::X | Input::Y => (0, 4095),
+            Input::Triangle(field) => field.range(),
+            Input::Vertex(_, attribute) => attribute.range(),
             _ => (0, 255),
         }
     }
@@ -87,8 +103,10 @@ impl Input {
     /// Returns the kind of the input.
     pub fn kind(self) -> Kind {
         match self {
-            Input::Texel(..) | Input::Destination => Kind::Word,
+            Input::Texel(..) | Input::Destination | Input::Held | Input::Depth => Kind::Word,
             Input::Local(local) => local.kind,
+            Input::Triangle(field) => field.kind(),
+            Input::Vertex(_, attribute) => attribute.kind(),
             _ => Kind::Number,
         }
     }

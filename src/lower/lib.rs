@@ -6,16 +6,29 @@
 //!
 //! The example `shader` prints a combiner program as GLSL.
 
+mod binary;
+mod body;
 pub mod code;
 mod generic;
+mod helper;
 mod input;
+mod kind;
 mod language;
 mod number;
+mod operation;
 mod order;
 mod pixel;
+mod place;
+mod setup;
 mod texel;
+mod triangle;
+mod truth;
+mod whole;
 
 pub use generic::{Generic, Sources};
 pub use input::{Input, Local, Weight};
-pub use language::{Language, Named};
+pub use language::{Draw, Language, Named};
 pub use pixel::{Function, Options, Result, Textures};
+pub use setup::Setup;
+pub use triangle::{Attribute, Field, Part};
+pub use whole::Refusal;

@@ -33,6 +33,7 @@ macro_rules! operators {
 operators! {
     Number: Add add Self, |a, b| a.made(&[b], Operation::Add(a.operand(), b.operand()));
     Number: Sub sub Self, |a, b| a.made(&[b], Operation::Subtract(a.operand(), b.operand()));
+    Number: Mul mul Self, |a, b| a.multiplied(b);
     Sum: Add add Self, |a, b| a.combined(b, |a, b| a + b);
     Sum: Sub sub Self, |a, b| a.combined(b, |a, b| a - b);
     Word: BitAnd bitand Self, |a, b| a.with(b, Operation::And);
@@ -57,7 +58,7 @@ impl<'a> Number<'a> {
         }
     }
 
-    fn code(self) -> Option<&'a Code> {
+    pub(crate) fn code(self) -> Option<&'a Code> {
         match self {
             Constant(_) => None,
             Number::Of(code, _) => Some(code),
@@ -80,7 +81,7 @@ impl<'a> Number<'a> {
     }
 
     /// Makes an operation on this number and others. If none of them is a line, the result is computed.
-    fn made(self, others: &[Number<'a>], operation: Operation) -> Number<'a> {
+    pub(crate) fn made(self, others: &[Number<'a>], operation: Operation) -> Number<'a> {
         let code = self.code().or_else(|| others.iter().find_map(|other| other.code()));
         match code {
             Some(code) => Number::new(code, code.make(operation)),

@@ -11,7 +11,7 @@ use crate::code::{Code, Line, Operand, Operation, Range, Test, collected};
 use crate::input::Input;
 use crate::number::{Number, Word};
 use crate::order::{Block, Listing};
-use crate::texel::Sampler;
+use crate::texel::{Given, Sampler};
 
 /// The inputs of a printed function that concern textures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -48,6 +48,15 @@ pub enum Result {
         /// The alpha test; `None` if every fragment passes.
         test: Option<Test>,
     },
+    /// The new words of a whole pixel.
+    Pixel {
+        /// The surface's new word, if the test holds.
+        word: Operand,
+        /// The new word of the depth buffer, whatever the test, if it can change.
+        depth: Option<Operand>,
+        /// Whether the surface takes its word; `None` if it always does.
+        test: Option<Test>,
+    },
 }
 
 /// The code of a pixel: a function of its inputs.
@@ -62,13 +71,13 @@ pub struct Function {
 }
 
 /// Makes the inputs of a function.
-struct Builder<'a> {
-    code: &'a Code,
-    options: Options,
+pub(crate) struct Builder<'a> {
+    pub(crate) code: &'a Code,
+    pub(crate) options: Options,
 }
 
 impl<'a> Builder<'a> {
-    fn given(&self, input: Input) -> Number<'a> {
+    pub(crate) fn given(&self, input: Input) -> Number<'a> {
         Number::new(self.code, self.code.input(input, input.range()))
     }
 
@@ -77,25 +86,17 @@ impl<'a> Builder<'a> {
     }
 
     /// Returns constants of the draw, as inputs or as constants of the text.
-    fn constants<const N: usize>(&self, bytes: [u8; N], input: impl Fn(usize) -> Input) -> [Number<'a>; N] {
+    pub(crate) fn constants<const N: usize>(&self, bytes: [u8; N], input: impl Fn(usize) -> Input) -> [Number<'a>; N] {
         let uniform = self.options.uniform;
         std::array::from_fn(|n| if uniform { self.given(input(n)) } else { Number::Constant(bytes[n].into()) })
     }
 
     /// Returns the registers with all inputs that a pixel may have; `texture` returns those of a unit.
     fn registers(&self, fog: [Number<'a>; 4], texture: impl FnMut(usize) -> [Number<'a>; 4]) -> Registers<Number<'a>> {
-        const UNITS: [Register; 4] = [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
-        let mut registers = Registers::from_value(Number::ZERO);
-        registers.load(Register::PrimaryColor, self.channels(Input::Primary));
-        registers.load(Register::SecondaryColor, self.channels(Input::Secondary));
-        registers.load(Register::Fog, fog);
-        for (register, value) in UNITS.into_iter().zip((0..4).map(texture)) {
-            registers.load(register, value);
-        }
-        registers
+        loaded([self.channels(Input::Primary), self.channels(Input::Secondary), fog], texture)
     }
 
-    fn fragment(&self, combiners: &Combiners, registers: Registers<Number<'a>>) -> [Number<'a>; 4] {
+    pub(crate) fn fragment(&self, combiners: &Combiners, registers: Registers<Number<'a>>) -> [Number<'a>; 4] {
         let mut listing = Listing::new(self.code, self.options.policies);
         let constants = |listing: &mut Listing<'a>, bytes: [[u8; 4]; 2], stage: Option<usize>| {
             listing.enter(stage.map_or(Block::Final, Block::Stage));
@@ -109,17 +110,26 @@ impl<'a> Builder<'a> {
         combiners.evaluate(registers, constants, &mut listing).map(|channel| channel.limited(0, 255))
     }
 
-    /// Applies the raster operations of a draw.
-    fn stored(&self, draw: &Draw, surface: SurfaceFormat, fragment: [Number<'a>; 4]) -> Result {
+    /// ROP-1: returns the alpha test of a draw.
+    pub(crate) fn alpha_test(&self, draw: &Draw, fragment: [Number<'a>; 4]) -> Option<Test> {
+        self.code.by("ROP-1");
+        draw.alpha_test.map(|test| {
+            let [reference] = self.constants([test.reference], |_| Input::AlphaReference);
+            fragment[3].compared(test.function, reference)
+        })
+    }
+
+    /// Blends and stores. Returns what the surface holds afterwards, where it holds `held`.
+    pub(crate) fn word(
+        &self,
+        draw: &Draw,
+        surface: SurfaceFormat,
+        fragment: [Number<'a>; 4],
+        held: Word<'a>,
+    ) -> Word<'a> {
         let code = self.code;
         let mut listing = Listing::new(code, self.options.policies);
         listing.enter(Block::Raster);
-        code.by("ROP-1");
-        let test = draw.alpha_test.map(|test| {
-            let [reference] = self.constants([test.reference], |_| Input::AlphaReference);
-            fragment[3].compared(test.function, reference)
-        });
-        let held = Word(self.given(Input::Destination));
         let mut channels = fragment;
         if let Some(state) = draw.blend.as_ref().filter(|_| surface::blends(surface)) {
             let source = blend::truncated(surface, fragment, &mut listing);
@@ -139,6 +149,15 @@ impl<'a> Builder<'a> {
         code.by("ROP-6");
         let word = surface::masked(held, word, surface::write_mask(surface, draw.color_mask));
         code.name(word.0.operand(), || "stored".to_string());
+        word
+    }
+
+    /// Applies the raster operations of a draw.
+    fn stored(&self, draw: &Draw, surface: SurfaceFormat, fragment: [Number<'a>; 4]) -> Result {
+        let code = self.code;
+        let test = self.alpha_test(draw, fragment);
+        let held = Word(self.given(Input::Destination));
+        let word = self.word(draw, surface, fragment, held);
         match test.and_then(|test| code.decided(test)) {
             // Every fragment is dropped, whatever its alpha.
             Some(false) => {
@@ -148,6 +167,33 @@ impl<'a> Builder<'a> {
             Some(true) => Result::Stored { word: word.0.operand(), test: None },
             None => Result::Stored { word: word.0.operand(), test },
         }
+    }
+}
+
+/// Returns registers with the two colours and fog; `texture` returns what a unit loads.
+pub(crate) fn loaded<'a>(
+    [primary, secondary, fog]: [[Number<'a>; 4]; 3],
+    texture: impl FnMut(usize) -> [Number<'a>; 4],
+) -> Registers<Number<'a>> {
+    const UNITS: [Register; 4] = [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
+    let mut registers = Registers::from_value(Number::ZERO);
+    registers.load(Register::PrimaryColor, primary);
+    registers.load(Register::SecondaryColor, secondary);
+    registers.load(Register::Fog, fog);
+    for (register, value) in UNITS.into_iter().zip((0..4).map(texture)) {
+        registers.load(register, value);
+    }
+    registers
+}
+
+/// TEX-16: what a unit without a texture gives: opaque black.
+pub(crate) const UNBOUND: [Number<'static>; 4] = [Number::ZERO, Number::ZERO, Number::ZERO, Number::ONE];
+
+/// Returns whether unit `n` of a draw has no texture where it needs one.
+pub(crate) fn is_idle(draw: &Draw, n: usize) -> bool {
+    match draw.texture_shader[n].operation {
+        ShaderOperation::None => true,
+        operation => operation.samples() && draw.textures[n].is_none(),
     }
 }
 
@@ -173,20 +219,15 @@ impl Function {
         // CMB-13: without fog the factor is 1.
         let factor = if draw.fog.enabled { builder.given(Input::Fog(3)) } else { Number::ONE };
         let registers = builder.registers([r, g, b, factor], |n| {
-            let idle = match draw.texture_shader[n].operation {
-                ShaderOperation::None => true,
-                operation => operation.samples() && draw.textures[n].is_none(),
-            };
-            if idle {
-                // TEX-16: a unit without a texture gives opaque black.
-                return [Number::ZERO, Number::ZERO, Number::ZERO, Number::ONE];
+            if is_idle(draw, n) {
+                return UNBOUND;
             }
             let unit = planned.units.iter().find(|unit| unit.index == n);
             match unit {
                 Some(unit) if options.textures == Textures::Words && planned.shader.is_none() && reads_words(unit) => {
                     let sampler = Sampler::new(unit);
                     let border = builder.constants(unit.state.border_color, |c| Input::BorderColor(n, c));
-                    sampler.register(border, |input| builder.given(input), &code)
+                    sampler.register(border, &Given(n, |input| builder.given(input)), &code).0
                 }
                 // Only signed channels, and results of texture shaders, can be negative.
                 Some(unit) if unit.state.signed == [false; 4] && planned.shader.is_none() => {
@@ -206,7 +247,7 @@ impl Function {
     }
 
     /// Makes a function of the lines on which the result depends, renumbered.
-    fn new(code: Code, result: Result, options: &Options) -> Function {
+    pub(crate) fn new(code: Code, result: Result, options: &Options) -> Function {
         let (lines, renamed) = code.kept(&result.operands());
         Function { lines, result: result.renamed(renamed), uniform: options.uniform }
     }
@@ -243,6 +284,10 @@ impl Result {
             Result::Stored { word, test } => {
                 let test = test.map(|Test(function, operands)| Test(function, operands.map(&mut name)));
                 Result::Stored { word: name(word), test }
+            }
+            Result::Pixel { word, depth, test } => {
+                let test = test.map(|Test(function, operands)| Test(function, operands.map(&mut name)));
+                Result::Pixel { word: name(word), depth: depth.map(&mut name), test }
             }
         }
     }

@@ -1,14 +1,41 @@
 //! Computes what a texture unit yields from fetched words and weights (TEX-1, TEX-6, TEX-7, TEX-9, TEX-18).
 
-use ninebit::number::Register as _;
+use ninebit::number::{Integer, Register as _};
 use ninebit::state::*;
 use ninebit::texture::filter::{bilinear, lerp};
-use ninebit::texture::format;
 use ninebit::texture::planned::PlannedUnit;
+use ninebit::texture::{color_key, format};
 
 use crate::code::Code;
 use crate::input::{Input, Weight};
 use crate::number::{Number, Word};
+use crate::truth::Truth;
+
+/// Where the texels of a unit, and the weights of its filter, come from.
+pub(crate) trait Texels<'a> {
+    /// Returns the word of a texel. 0 to 3 are the footprint in a level, row by row, 4 to 7 that in the next level.
+    fn word(&self, at: usize) -> Number<'a>;
+    /// Returns whether a texel is the border colour.
+    fn outside(&self, at: usize, code: &'a Code) -> Truth<'a>;
+    /// Returns a weight of the filter.
+    fn weight(&self, of: Weight) -> Number<'a>;
+}
+
+/// Texels that the caller has fetched.
+pub(crate) struct Given<F>(pub(crate) usize, pub(crate) F);
+
+impl<'a, F: Fn(Input) -> Number<'a>> Texels<'a> for Given<F> {
+    fn word(&self, at: usize) -> Number<'a> {
+        self.1(Input::Texel(self.0, at))
+    }
+    fn outside(&self, at: usize, code: &'a Code) -> Truth<'a> {
+        let bit = self.1(Input::Outside(self.0)).low_bits(1 << at);
+        Truth::Of(code, Number::compared(bit, CompareFunction::NotEqual, Number::ZERO))
+    }
+    fn weight(&self, of: Weight) -> Number<'a> {
+        self.1(Input::Weight(self.0, of))
+    }
+}
 
 /// Computes the colour of a unit that samples its texture.
 #[derive(Clone, Copy, Debug)]
@@ -20,18 +47,22 @@ pub(crate) struct Sampler<'u> {
 
 impl<'u> Sampler<'u> {
     pub(crate) fn new(unit: &'u PlannedUnit) -> Sampler<'u> {
-        let outside = unit.modes().contains(&AddressMode::ClampToBorder) && !unit.border;
+        let mut modes = unit.modes().to_vec();
+        if unit.kind == TextureKind::ThreeDimensional {
+            modes.push(unit.state.address_r);
+        }
+        let outside = modes.contains(&AddressMode::ClampToBorder) && !unit.border;
         let border = (outside && unit.kind != TextureKind::Cube).then_some(unit.state.border_color);
         Sampler { unit, border }
     }
 
     /// Returns whether four texels are mixed.
-    fn is_linear(&self) -> bool {
+    pub(crate) fn is_linear(&self) -> bool {
         [self.unit.state.mag_filter, self.unit.state.min_filter].contains(&Filter::Linear)
     }
 
     /// Returns whether two levels are mixed.
-    fn has_next(&self) -> bool {
+    pub(crate) fn has_next(&self) -> bool {
         self.unit.levels.len() > 1 && self.unit.state.mip_filter == MipFilter::Linear
     }
 
@@ -45,25 +76,22 @@ impl<'u> Sampler<'u> {
         }
     }
 
-    /// Returns the value of the register that the unit loads.
+    /// Returns the value of the register that the unit loads, and whether a colour key drops the fragment.
     pub(crate) fn register<'a>(
         &self,
         border: [Number<'a>; 4],
-        mut input: impl FnMut(Input) -> Number<'a>,
+        texels: &impl Texels<'a>,
         code: &'a Code,
-    ) -> [Number<'a>; 4] {
-        let n = self.unit.index;
-        let mut weight = |of: Weight| input(Input::Weight(n, of));
-        let weights = Weight::ALL.map(&mut weight);
-        let mut level = |first: usize, [u, v]: [Number<'a>; 2]| {
-            let mut lanes = |at: usize| {
-                let (word, outside) = (input(Input::Texel(n, first + at)), input(Input::Outside(n)));
-                self.lanes(Word(word), (first + at, outside), border, code)
+    ) -> ([Number<'a>; 4], Truth<'a>) {
+        let weights = Weight::ALL.map(|of| texels.weight(of));
+        let level = |first: usize, [u, v]: [Number<'a>; 2]| {
+            let lanes = |at: usize| {
+                self.lanes(Word(texels.word(first + at)), |code| texels.outside(first + at, code), border, code)
             };
             if !self.is_linear() {
                 return lanes(0);
             }
-            let texels = [0, 1, 2, 3].map(&mut lanes);
+            let texels = [0, 1, 2, 3].map(lanes);
             code.by("TEX-6");
             [0, 1, 2, 3].map(|lane: usize| {
                 let all = texels.map(|texel| texel[lane]);
@@ -85,6 +113,13 @@ impl<'u> Sampler<'u> {
                 }
             });
         }
+        let (lanes, dropped) = self.keyed(lanes, code);
+        (self.loaded(lanes, code), dropped)
+    }
+
+    /// Returns the register that lanes become.
+    pub(crate) fn loaded<'a>(&self, lanes: [Number<'a>; 4], code: &'a Code) -> [Number<'a>; 4] {
+        let n = self.unit.index;
         let register = if self.unit.is_wide() { self.bytes(lanes, code) } else { self.doubled(lanes, code) };
         for (channel, name) in ["r", "g", "b", "a"].into_iter().enumerate() {
             code.name(register[channel].operand(), || format!("texture{n}_{name}"));
@@ -92,11 +127,23 @@ impl<'u> Sampler<'u> {
         register
     }
 
+    /// Applies the colour key, if the unit has one (KEY-1). Returns whether it drops the fragment.
+    fn keyed<'a>(&self, lanes: [Number<'a>; 4], code: &'a Code) -> ([Number<'a>; 4], Truth<'a>) {
+        let Some(key) = &self.unit.state.color_key else { return (lanes, Truth::Known(false)) };
+        code.by("KEY-1");
+        let wanted = color_key::as_lanes(self.unit, key);
+        let equal = |n: usize| Integer::compared(lanes[n], CompareFunction::Equal, Number::Constant(wanted[n].into()));
+        let matched = (0..color_key::compared(self.unit)).map(equal).fold(Truth::Known(true), |all, one| all & one);
+        let cleared = color_key::cleared(key.mode);
+        let lanes = [0, 1, 2, 3].map(|n: usize| if cleared[n] { Number::ZERO.or(matched, lanes[n]) } else { lanes[n] });
+        (lanes, if key.mode == ColorKeyMode::Texel { matched } else { Truth::Known(false) })
+    }
+
     /// Returns the lanes of a texel: its channels, or its halves.
     fn lanes<'a>(
         &self,
         word: Word<'a>,
-        (at, outside): (usize, Number<'a>),
+        outside: impl Fn(&'a Code) -> Truth<'a>,
         border: [Number<'a>; 4],
         code: &'a Code,
     ) -> [Number<'a>; 4] {
@@ -122,8 +169,7 @@ impl<'u> Sampler<'u> {
                 return value;
             }
             code.by("TEX-7");
-            let is_outside = outside.low_bits(1 << at).compared(CompareFunction::NotEqual, Number::ZERO);
-            read(border[lane]).selected(is_outside, code, value)
+            read(border[lane]).or(outside(code), value)
         })
     }
 

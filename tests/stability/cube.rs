@@ -66,7 +66,7 @@ fn faces(plan: &Plan) -> Vec<(Face, [f64; 3])> {
             // Numbers of at most 26 bits.
             let direction = g.map(|g| {
                 let Binary { mantissa, exponent } = at.value(&g);
-                mantissa as f64 * 2_f64.powi(exponent)
+                mantissa as f64 * 2_f64.powi(exponent as i32)
             });
             let face = Face::from_direction(direction, direction.map(f64::abs), 0.0);
             let (i, j) = covered.pixel;

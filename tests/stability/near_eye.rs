@@ -103,7 +103,7 @@ fn errors(corners: [[f32; 2]; 3], w: [f64; 3]) -> [Errors; 2] {
                 most.weight = most.weight.max(beyond(floored, 256.0 * exact[n]));
             }
             let u = 256.0 * f64::from(SIDE) * ideal::mix(exact, s.map(f64::from));
-            most.u = most.u.max(beyond(coordinate(sample.value(&f), SIDE), u));
+            most.u = most.u.max(beyond(coordinate(sample.value(&f), SIDE.into()), u));
         }
     }
     worst

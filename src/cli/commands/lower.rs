@@ -5,7 +5,7 @@ use super::*;
 use ninebit::plan::PlanOptions;
 use ninebit::state::Named as _;
 use ninebit_files::output::write_below;
-use ninebit_lower::{Function, Generic, Language, Named, Options, Sources, Textures};
+use ninebit_lower::{self as lower, Function, Generic, Language, Named, Options, Setup, Sources, Textures};
 use ninebit_program::{registers, text};
 use ninebit_scene::register_words;
 
@@ -38,6 +38,9 @@ pub(crate) struct Arguments {
     /// Functions of a scene's draws: what is given of textures
     #[arg(long, value_enum, value_name = "FORM", default_value_t = Given::Registers)]
     textures: Given,
+    /// C99, GLSL, WGSL: a scene's draws from the place of a pixel, the constants of its triangle and the memories of textures to the stored words
+    #[arg(long, conflicts_with_all = ["generic", "uniform", "textures", "fragment"])]
+    whole: bool,
     /// Functions of a scene's draws: end with the fragment, before alpha test, blend and store. A program alone always does
     #[arg(long)]
     fragment: bool,
@@ -89,6 +92,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let scene = arguments.program.scene(path, &arguments.state, context)?;
     let draws = chosen_draws(&scene, arguments.draw)?;
     let out = match arguments.to.language() {
+        _ if arguments.whole => whole(arguments, path, &scene, &draws, alone)?,
         Some(language) => functions(arguments, path, language, &scene, &draws, alone)?,
         None => programs(arguments, &scene, &draws, alone),
     };
@@ -143,6 +147,65 @@ fn programs(arguments: &Arguments, scene: &Scene, draws: &[(usize, &Draw)], alon
     out
 }
 
+/// Returns draws as functions of whole pixels.
+fn whole(
+    arguments: &Arguments,
+    path: &Path,
+    scene: &Scene,
+    draws: &[(usize, &Draw)],
+    alone: bool,
+) -> Result<String, Failure> {
+    if alone {
+        return Err(Failure::usage(
+            format!("{} is a program alone, which has no pixels", shown::path(path)),
+            "leave `--whole` out, or name a scene",
+        ));
+    }
+    let options = Options { policies: arguments.state.policies()?, ..Options::default() };
+    let plan = compiled(scene, PlanOptions { policies: options.policies, prune: true })?;
+    let mut made = Vec::new();
+    for (number, draw) in draws {
+        let function = Function::of_pixel(scene, &plan, *number, &options).map_err(|refusals| {
+            let states: Vec<&str> = refusals.iter().map(|refusal| refusal.name()).collect();
+            let message = format!(
+                "draw {number} `{}` has {}, of which no whole pixel is printed",
+                shown::name(&draw.name),
+                states.join(" and ")
+            );
+            Failure::invalid(
+                "NB0543",
+                message,
+                "leave `--whole` out: the function then takes what textures yield; `--draw` chooses other draws",
+            )
+        })?;
+        let setup = Setup::new(&plan, &plan.draws()[*number], &function);
+        made.push((*number, shown::name(&draw.name), function, setup));
+    }
+    let drawn: Vec<_> = made
+        .iter()
+        .map(|(number, name, function, setup)| lower::Draw {
+            name: format!("ninebit_draw{number}"),
+            about: format!("draw {number} `{name}`"),
+            function,
+            setup,
+        })
+        .collect();
+    arguments.to.language().and_then(|language| language.print_whole(&drawn)).ok_or_else(|| {
+        Failure::usage(
+            "whole pixels are not printed in this form".to_string(),
+            "take `--to c99`, `--to glsl` or `--to wgsl`",
+        )
+    })
+}
+
+/// Plans a scene.
+fn compiled(scene: &Scene, options: PlanOptions) -> Result<Plan, Failure> {
+    Plan::compile(scene, &options).map_err(|errors| {
+        let message = errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
+        Failure::invalid("NB0322", message, "`ninebit check` says where")
+    })
+}
+
 /// Returns draws, or a program of its own, as functions.
 fn functions(
     arguments: &Arguments,
@@ -159,10 +222,7 @@ fn functions(
         fragment: arguments.fragment,
     };
     // Nothing is pruned: with `--uniform` other constants may be passed.
-    let plan = Plan::compile(scene, &PlanOptions { policies: options.policies, prune: false }).map_err(|errors| {
-        let message = errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
-        Failure::invalid("NB0322", message, "`ninebit check` says where")
-    })?;
+    let plan = compiled(scene, PlanOptions { policies: options.policies, prune: false })?;
     let made = |(number, draw): &(usize, &Draw)| {
         if alone {
             let about = format!("{} on {}", shown::path(path), scene.profile.name());

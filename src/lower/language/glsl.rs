@@ -40,6 +40,12 @@ impl Syntax for Glsl {
             Result::Fragment(_) => format!(
                 "// {about}: R, G, B, A of the fragment, 0 to 255.\nivec4 {name}(NinebitPixel pixel{constants})\n{{\n"
             ),
+            Result::Pixel { .. } => format!(
+                "// {about}: a pixel that a triangle covers. word and depth, which has the stencil in its upper byte, become what the surface and its\n\
+                 // depth buffer hold afterwards; false where the fragment is dropped.\n\
+                 bool {name}(NinebitTriangle triangle, int x, int y, inout uint word, inout uint depth)\n{{\n    \
+                 uint held_word = word, held_depth = depth;\n"
+            ),
             Result::Stored { .. } => format!(
                 "// {about}: the word that the surface holds afterwards; false where the alpha test drops the fragment.\n\
                  bool {name}(NinebitPixel pixel{constants}, out uint word)\n{{\n"
@@ -55,6 +61,33 @@ impl Syntax for Glsl {
         let dropped = "        word = pixel.destination;\n        return false;\n    }\n";
         let test = test.map(|test| format!("    if (!({test})) {{ // ROP-1\n{dropped}")).unwrap_or_default();
         format!("{test}    word = {word};\n    return true;\n}}\n")
+    }
+
+    fn pixel(&self, word: String, depth: Option<String>, test: Option<String>) -> String {
+        let depth = depth.map(|depth| format!("    depth = {depth};\n")).unwrap_or_default();
+        let test = test.map(|test| format!("    if (!({test})) return false;\n")).unwrap_or_default();
+        format!("{depth}{test}    word = {word};\n    return true;\n}}\n")
+    }
+
+    fn wide(&self, operation: Wide, operands: &[(String, bool)], result: bool) -> Text {
+        shader::wide(operation, operands, result, false)
+    }
+
+    fn compare(&self, a: (String, bool), operator: &str, b: (String, bool)) -> String {
+        shader::compare(a, operator, b, false)
+    }
+
+    fn widened(&self, text: String) -> String {
+        format!("ninebit_wide({text})")
+    }
+
+    fn constant(&self, value: i64, kind: Kind) -> String {
+        match kind {
+            Kind::Word if value > 255 => format!("{value:#x}u"),
+            Kind::Word => format!("{value}u"),
+            _ if is_wide((value, value)) => shader::constant(value, "uvec2"),
+            _ => value.to_string(),
+        }
     }
 
     fn input(&self, input: Input) -> String {
@@ -74,6 +107,12 @@ impl Syntax for Glsl {
             Input::AlphaReference => "constants.alpha_reference".to_string(),
             Input::BorderColor(n, c) => format!("constants.border[{n}].{}", letter(c)),
             Input::Local(local) => local.name.to_string(),
+            Input::X => "x".to_string(),
+            Input::Y => "y".to_string(),
+            Input::Held => "held_word".to_string(),
+            Input::Depth => "held_depth".to_string(),
+            Input::Triangle(field) => format!("triangle.{}", field.member()),
+            Input::Vertex(k, attribute) => format!("vertex[{k}].{}", attribute.member()),
         }
     }
 
@@ -83,15 +122,12 @@ impl Syntax for Glsl {
             (Call::Greatest, operands) => Text::Term(format!("max({})", operands.join(", "))),
             (Call::Select, [test, then, otherwise]) => Text::Open(format!("{test} ? {then} : {otherwise}")),
             (Call::Number, operands) => Text::Term(format!("int({})", operands.join(""))),
+            (Call::Named(name), operands) => Text::Term(format!("ninebit_{name}({})", operands.join(", "))),
             (_, operands) => Text::Term(format!("uint({})", operands.join(""))),
         }
     }
 
     fn declare(&self, name: &str, line: &Line, value: &str, comment: &str) -> String {
-        let kind = match line.operation.kind() {
-            Kind::Number => "int",
-            Kind::Word => "uint",
-        };
-        format!("{kind} {name} = {value}; // {comment}")
+        format!("{} {name} = {value}; // {comment}", shader::glsl_type(line))
     }
 }

@@ -3,8 +3,10 @@
 
 mod c;
 mod glsl;
+mod shader;
 mod verilog;
 mod wgsl;
+mod whole;
 
 pub(crate) use verilog::port;
 
@@ -12,9 +14,11 @@ use std::collections::BTreeSet;
 
 use ninebit::state::{CompareFunction, named};
 
-use crate::code::{Kind, Line, Operand, Operation, Test};
+use crate::code::{Kind, Line, Operand, Operation, Range, Table, Test};
+use crate::helper::Helper;
 use crate::input::Input;
 use crate::pixel::{Function, Result};
+pub use whole::Draw;
 
 named! {
     /// A language that functions are printed in.
@@ -78,18 +82,38 @@ pub(crate) trait Syntax {
     fn fragment(&self, channels: [String; 4]) -> String;
     /// Prints the end of a function that yields a word, unless the fragment fails `test`.
     fn stored(&self, word: String, test: Option<String>) -> String;
+    /// Prints the end of a function of a whole pixel.
+    fn pixel(&self, word: String, depth: Option<String>, test: Option<String>) -> String;
     /// Returns how an input is read.
     fn input(&self, input: Input) -> String;
     /// Prints a constant as a value of the given kind.
     fn constant(&self, value: i64, kind: Kind) -> String {
         match kind {
-            Kind::Number => value.to_string(),
+            Kind::Number | Kind::Binary => value.to_string(),
             Kind::Word if value > 255 => format!("{value:#x}u"),
             Kind::Word => format!("{value}u"),
         }
     }
     /// Prints an operation that is not an infix operator in every language. The operands are terms.
     fn call(&self, call: Call, operands: &[String]) -> Text;
+    /// Prints an operation of numbers of which some, or the result, may need more than 32 bits. The operands are terms, each with whether it does.
+    fn wide(&self, operation: Wide, operands: &[(String, bool)], result: bool) -> Text;
+    /// Prints a comparison of numbers of which some need more than 32 bits.
+    fn compare(&self, (a, _): (String, bool), operator: &str, (b, _): (String, bool)) -> String {
+        format!("{a} {operator} {b}")
+    }
+    /// Converts a number to 64 bits.
+    fn widened(&self, text: String) -> String {
+        text
+    }
+    /// Returns how a part of a binary number is read.
+    fn part(&self, binary: String, is_exponent: bool) -> String {
+        format!("{binary}.{}", if is_exponent { "y" } else { "x" })
+    }
+    /// Prints a word of a unit's memory.
+    fn word(&self, unit: usize, at: String) -> String {
+        format!("ninebit_texel({unit}, {at})")
+    }
     /// Prints the declaration of a named value.
     fn declare(&self, name: &str, line: &Line, value: &str, comment: &str) -> String;
     /// Returns whether operands of comparisons, and numbers that become words, have to be names. In Verilog the width of any other expression depends
@@ -103,13 +127,21 @@ pub(crate) trait Syntax {
 fn function(syntax: &'static dyn Syntax, named: &Named<'_>) -> String {
     let (lines, result) = (&named.function.lines, named.function.result);
     let test = match result {
-        Result::Stored { test: Some(Test(_, operands)), .. } => operands.to_vec(),
+        Result::Stored { test: Some(Test(_, operands)), .. } | Result::Pixel { test: Some(Test(_, operands)), .. } => {
+            operands.to_vec()
+        }
         _ => Vec::new(),
     };
-    let body = Body::from_lines(syntax, lines, &result.operands(), &test);
-    let lines: String = body.declarations.iter().map(|line| format!("    {line}\n")).collect();
+    let longest = if matches!(result, Result::Pixel { .. }) { whole::LONGEST } else { usize::MAX };
+    let body = Body::within(longest, syntax, lines, (&result.operands(), &test));
+    let lines = body.printed();
     let end = match result {
         Result::Fragment(channels) => syntax.fragment(body.open(channels, Kind::Number)),
+        Result::Pixel { word, depth, test } => {
+            let word = body.operand(word, Kind::Word).open();
+            let depth = depth.map(|depth| body.operand(depth, Kind::Word).open());
+            syntax.pixel(word, depth, test.map(|test| body.test(test)))
+        }
         Result::Stored { word, test } => {
             syntax.stored(body.operand(word, Kind::Word).open(), test.map(|test| body.test(test)))
         }
@@ -126,7 +158,34 @@ pub(crate) enum Call {
     Select,
     Number,
     Word,
+    /// A helper, a table or a binary number.
+    Named(&'static str),
 }
+
+/// An operation of numbers that may need more than 32 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Wide {
+    Add,
+    Subtract,
+    Multiply,
+    Least,
+    Greatest,
+    Bits,
+    Select,
+    Length,
+    Raise,
+    Lower,
+    Divide,
+}
+
+/// Returns whether numbers of a range need more than 32 bits.
+pub(crate) fn is_wide(range: Range) -> bool {
+    range.0 < i32::MIN.into() || range.1 > i32::MAX.into()
+}
+
+/// Tables, with their names in printed text.
+pub(crate) const TABLES: [(&str, Table); 2] =
+    [("exponential", Table(&ninebit::raster::fog::EXPONENTIAL)), ("squared", Table(&ninebit::raster::fog::SQUARED))];
 
 /// A piece of text.
 #[derive(Clone, Debug)]
@@ -138,6 +197,12 @@ pub(crate) enum Text {
 }
 
 impl Text {
+    fn length(&self) -> usize {
+        match self {
+            Text::Term(text) | Text::Open(text) => text.len(),
+        }
+    }
+
     fn term(self) -> String {
         match self {
             Text::Term(text) => text,
@@ -169,6 +234,16 @@ impl<'f> Body<'f> {
         results: &[Operand],
         test: &[Operand],
     ) -> Body<'f> {
+        Body::within(usize::MAX, syntax, lines, (results, test))
+    }
+
+    /// The same, where a value whose text is longer than `longest` has a line of its own.
+    pub(crate) fn within(
+        longest: usize,
+        syntax: &'static dyn Syntax,
+        lines: &'f [Line],
+        (results, test): (&[Operand], &[Operand]),
+    ) -> Body<'f> {
         let mut uses = vec![0; lines.len()];
         let all = lines.iter().flat_map(|line| line.operation.operands()).chain(results.iter().copied());
         all.filter_map(Operand::line).for_each(|line| uses[line] += 1);
@@ -185,7 +260,8 @@ impl<'f> Body<'f> {
         for (n, line) in lines.iter().enumerate() {
             let (text, mut rules) = body.text(line);
             let is_input = matches!(line.operation, Operation::Input(_));
-            if is_input || (line.name.is_none() && uses[n] < 2 && !named[n]) {
+            let is_short = text.length() <= longest;
+            if is_input || (line.name.is_none() && uses[n] < 2 && !named[n] && is_short) {
                 body.texts.push((text, rules));
                 continue;
             }
@@ -205,8 +281,13 @@ impl<'f> Body<'f> {
             let range = match line.operation.kind() {
                 Kind::Number => format!("{}..{}", line.range.0, line.range.1),
                 Kind::Word => format!("0..{:#x}", line.range.1),
+                Kind::Binary => String::new(),
             };
-            let comment = if rules.is_empty() { range } else { format!("{}: {range}", rules.join(", ")) };
+            let comment = match (rules.is_empty(), range.is_empty()) {
+                (true, _) => range,
+                (_, true) => rules.join(", "),
+                _ => format!("{}: {range}", rules.join(", ")),
+            };
             body.declarations.push(syntax.declare(&name, line, &text.open(), &comment));
             body.texts.push((Text::Term(name), BTreeSet::new()));
         }
@@ -229,8 +310,19 @@ impl<'f> Body<'f> {
         (self.operand(operand, kind).open(), rules.join(", "))
     }
 
+    fn is_wide(&self, operand: Operand) -> bool {
+        match operand {
+            Operand::Constant(value) => is_wide((value, value)),
+            Operand::Line(line) => {
+                let line = &self.lines[line as usize];
+                line.operation.kind() == Kind::Number && is_wide(line.range)
+            }
+        }
+    }
+
     fn test(&self, Test(function, operands): Test) -> String {
         let [a, b] = operands.map(|operand| self.operand(operand, Kind::Number).term());
+        let is_wide = operands.map(|operand| self.is_wide(operand));
         let operator = match function {
             CompareFunction::Never => return format!("{a} != {a}"),
             CompareFunction::Always => return format!("{a} == {a}"),
@@ -241,6 +333,9 @@ impl<'f> Body<'f> {
             CompareFunction::Greater => ">",
             CompareFunction::GreaterOrEqual => ">=",
         };
+        if is_wide != [false; 2] {
+            return self.syntax.compare((a, is_wide[0]), operator, (b, is_wide[1]));
+        }
         format!("{a} {operator} {b}")
     }
 
@@ -254,6 +349,9 @@ impl<'f> Body<'f> {
         let number = |value: i64| syntax.constant(value, kind);
         let shift = |bits: u32| syntax.constant(bits.into(), Kind::Word);
         let infix = |a: String, operator: &str, b: String| Text::Open(format!("{a} {operator} {b}"));
+        if let Some(text) = self.wide(line) {
+            return (text, rules);
+        }
         let text = match operation {
             Operation::Input(input) => return (Text::Term(syntax.input(input)), BTreeSet::new()),
             Operation::Add(a, b) => infix(self.summand(a, true), "+", self.summand(b, false)),
@@ -270,9 +368,59 @@ impl<'f> Body<'f> {
             Operation::Greatest(a, b) => syntax.call(Call::Greatest, &self.open([a, b], kind)),
             Operation::Number(a) => syntax.call(Call::Number, &self.open([a], kind)),
             Operation::Word(a) => syntax.call(Call::Word, &self.open([a], kind)),
-            Operation::Select(test, [c, d]) => syntax.call(Call::Select, &[self.test(test), term(c), term(d)]),
+            Operation::Select(test, [c, d]) | Operation::Choose(test, [c, d]) => {
+                syntax.call(Call::Select, &[self.test(test), term(c), term(d)])
+            }
+            Operation::Mask(a, by) => infix(term(a), "&", term(by)),
+            Operation::Divide(a, by) => infix(term(a), "/", term(by)),
+            Operation::Length(_) | Operation::Raise(..) | Operation::Lower(..) => {
+                let (wide, operands) = wide_operation(operation).unwrap_or((Wide::Length, Vec::new()));
+                let operands: Vec<_> = operands.into_iter().map(|operand| (term(operand), false)).collect();
+                syntax.wide(wide, &operands, false)
+            }
+            Operation::Entry(table, a) => {
+                let name = TABLES.iter().find(|(_, known)| *known == table).map_or("", |(name, _)| name);
+                Text::Term(format!("ninebit_{name}[{}]", self.operand(a, kind).open()))
+            }
+            Operation::Fetch(unit, a) => Text::Term(syntax.word(unit, self.operand(a, kind).open())),
+            Operation::Binary(a, b) => syntax.call(Call::Named("binary"), &self.open([a, b], kind)),
+            Operation::Mantissa(a) => Text::Term(syntax.part(term(a), false)),
+            Operation::Exponent(a) => Text::Term(syntax.part(term(a), true)),
+            Operation::Difference(a, b) => syntax.call(Call::Named("difference"), &self.open([a, b], kind)),
+            Operation::Call(helper, _) => {
+                syntax.call(Call::Named(helper.about().0), &self.arguments(helper, operation))
+            }
         };
         (text, rules)
+    }
+
+    /// Prints the operands of a helper.
+    fn arguments(&self, helper: Helper, operation: Operation) -> Vec<String> {
+        let wanted = helper.parameters().iter().zip(operation.operands());
+        wanted
+            .map(|((kind, range), operand)| {
+                let text = self.operand(operand, *kind).open();
+                let widens = *kind == Kind::Number && is_wide(*range) && !self.is_wide(operand);
+                if widens { self.syntax.widened(text) } else { text }
+            })
+            .collect()
+    }
+
+    /// Prints an operation of numbers if more than 32 bits are needed.
+    fn wide(&self, line: &Line) -> Option<Text> {
+        let (wide, operands) = wide_operation(line.operation)?;
+        let result = is_wide(line.range);
+        if !result && !operands.iter().any(|operand| self.is_wide(*operand)) {
+            return None;
+        }
+        let mut terms: Vec<(String, bool)> = operands
+            .iter()
+            .map(|operand| (self.operand(*operand, Kind::Number).term(), self.is_wide(*operand)))
+            .collect();
+        if let Operation::Select(test, _) = line.operation {
+            terms.insert(0, (self.test(test), false));
+        }
+        Some(self.syntax.wide(wide, &terms, result))
     }
 
     fn open<const N: usize>(&self, operands: [Operand; N], kind: Kind) -> [String; N] {
@@ -289,6 +437,26 @@ impl<'f> Body<'f> {
         });
         if binds { text.open() } else { text.term() }
     }
+}
+
+/// Returns the operation as one that may be wide, and the operands that may be.
+fn wide_operation(operation: Operation) -> Option<(Wide, Vec<Operand>)> {
+    Some(match operation {
+        Operation::Add(a, b) => (Wide::Add, vec![a, b]),
+        Operation::Subtract(a, b) => (Wide::Subtract, vec![a, b]),
+        Operation::Multiply(a, b) => (Wide::Multiply, vec![a, b]),
+        Operation::Least(a, b) => (Wide::Least, vec![a, b]),
+        Operation::Greatest(a, b) => (Wide::Greatest, vec![a, b]),
+        Operation::Bits(a, mask) => (Wide::Bits, vec![a, Operand::Constant(mask)]),
+        Operation::Mask(a, mask) => (Wide::Bits, vec![a, mask]),
+        Operation::Select(_, values) => (Wide::Select, values.to_vec()),
+        Operation::Length(a) => (Wide::Length, vec![a]),
+        Operation::Raise(a, by) => (Wide::Raise, vec![a, by]),
+        Operation::Lower(a, by) => (Wide::Lower, vec![a, by]),
+        Operation::Divide(a, by) => (Wide::Divide, vec![a, by]),
+        Operation::Quotient(a, by) => (Wide::Divide, vec![a, Operand::Constant(by)]),
+        _ => return None,
+    })
 }
 
 /// Returns whether some functions have constants as inputs.

@@ -15,7 +15,7 @@ fn width((low, high): Range) -> u32 {
 pub(crate) fn port(kind: Kind, range: Range) -> String {
     match kind {
         Kind::Number => format!("signed [{}:0]", width(range) - 1),
-        Kind::Word => "[31:0]".to_string(),
+        Kind::Word | Kind::Binary => "[31:0]".to_string(),
     }
 }
 
@@ -33,7 +33,9 @@ impl Syntax for Verilog {
             inputs.map(|input| format!("input {} {}", port(input.kind(), input.range()), self.input(input))).collect();
         match named.function.result {
             Result::Fragment(_) => ports.extend((0..4).map(|n| format!("output [7:0] out_{}", letter(n)))),
-            Result::Stored { .. } => ports.extend(["output passed", "output [31:0] word"].map(str::to_owned)),
+            Result::Stored { .. } | Result::Pixel { .. } => {
+                ports.extend(["output passed", "output [31:0] word"].map(str::to_owned))
+            }
         }
         format!("// {}\nmodule {} (\n    {}\n);\n", comment(&named.about), named.name, ports.join(",\n    "))
     }
@@ -49,6 +51,20 @@ impl Syntax for Verilog {
             None => ("1'b1;".to_owned(), word),
         };
         format!("    assign passed = {passed}\n    assign word = {word};\nendmodule\n")
+    }
+
+    /// Whole pixels are not printed in Verilog: set-up and memories are no combinational module.
+    fn pixel(&self, word: String, _depth: Option<String>, test: Option<String>) -> String {
+        self.stored(word, test)
+    }
+
+    fn wide(&self, operation: Wide, operands: &[(String, bool)], _result: bool) -> Text {
+        let operator = match operation {
+            Wide::Raise => "<<<",
+            _ => ">>>",
+        };
+        let terms: Vec<&str> = operands.iter().map(|(text, _)| text.as_str()).collect();
+        Text::Open(terms.join(&format!(" {operator} ")))
     }
 
     fn input(&self, input: Input) -> String {
@@ -67,6 +83,9 @@ impl Syntax for Verilog {
             Input::BlendConstant(c) => format!("blend_constant_{}", letter(c)),
             Input::AlphaReference => "alpha_reference".to_string(),
             Input::BorderColor(n, c) => format!("border{n}_{}", letter(c)),
+            Input::X | Input::Y | Input::Held | Input::Depth | Input::Triangle(_) | Input::Vertex(..) => {
+                super::glsl::Glsl.input(input)
+            }
             // A port cannot be an element of an array.
             Input::Local(local) => local.name.replace(['[', ']'], ""),
         }
@@ -74,7 +93,7 @@ impl Syntax for Verilog {
 
     fn constant(&self, value: i64, kind: Kind) -> String {
         match kind {
-            Kind::Number => value.to_string(),
+            Kind::Number | Kind::Binary => value.to_string(),
             Kind::Word if value > 255 => format!("32'h{value:x}"),
             Kind::Word => format!("32'd{value}"),
         }

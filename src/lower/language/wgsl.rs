@@ -42,6 +42,14 @@ impl Syntax for Wgsl {
         let constants = if named.function.uniform { ", constants: NinebitConstants" } else { "" };
         let (result, about) = match named.function.result {
             Result::Fragment(_) => ("vec4<i32>", "R, G, B, A of the fragment, 0 to 255"),
+            Result::Pixel { .. } => {
+                return format!(
+                    "// {}: a pixel that a triangle covers. Depths have the stencil in the upper byte.\n\
+                     fn {}(triangle: NinebitTriangle, x: i32, y: i32, held_word: u32, held_depth: u32) -> NinebitWhole {{\n",
+                    comment(&named.about),
+                    named.name
+                );
+            }
             Result::Stored { .. } => ("NinebitStored", "the word that the surface holds afterwards"),
         };
         let (name, function) = (&named.name, comment(&named.about));
@@ -58,6 +66,33 @@ impl Syntax for Wgsl {
         format!("{test}    return NinebitStored(true, {word});\n}}\n")
     }
 
+    fn pixel(&self, word: String, depth: Option<String>, test: Option<String>) -> String {
+        let depth = depth.unwrap_or("held_depth".to_string());
+        let test = test.unwrap_or("true".to_string());
+        format!(
+            "    let kept = {test};\n    return NinebitWhole(kept, select(held_word, {word}, kept), {depth});\n}}\n"
+        )
+    }
+
+    fn wide(&self, operation: Wide, operands: &[(String, bool)], result: bool) -> Text {
+        shader::wide(operation, operands, result, true)
+    }
+
+    fn compare(&self, a: (String, bool), operator: &str, b: (String, bool)) -> String {
+        shader::compare(a, operator, b, true)
+    }
+
+    fn widened(&self, text: String) -> String {
+        format!("ninebit_wide({text})")
+    }
+
+    fn constant(&self, value: i64, kind: Kind) -> String {
+        if kind == Kind::Number && is_wide((value, value)) {
+            return shader::constant(value, "vec2<u32>");
+        }
+        super::glsl::Glsl.constant(value, kind)
+    }
+
     fn input(&self, input: Input) -> String {
         match input {
             Input::FinalConstant(n, c) => format!("constants.final_combiner[{n}].{}", letter(c)),
@@ -72,6 +107,7 @@ impl Syntax for Wgsl {
             (Call::Greatest, operands) => format!("max({})", operands.join(", ")),
             (Call::Select, [test, then, otherwise]) => format!("select({otherwise}, {then}, {test})"),
             (Call::Number, operands) => format!("i32({})", operands.join("")),
+            (Call::Named(name), operands) => format!("ninebit_{name}({})", operands.join(", ")),
             (_, operands) => format!("u32({})", operands.join("")),
         })
     }

@@ -39,6 +39,7 @@ fn check(scene: &Scene, fragment: &DrawTrace, function: &Function, what: &str) -
                 assert!(want.is_none_or(|want| want == got), "{what}: fragment channel {c} is {got}, traced {want:?}");
             }
         }
+        Result::Pixel { .. } => panic!("no whole pixel was asked for"),
         Result::Stored { word, test } => {
             let passed = test.is_none_or(|Test(test, [a, b])| test.passes(value_of(&values, a), value_of(&values, b)));
             assert_eq!(passed, !dropped, "{what}: the alpha test");

@@ -119,7 +119,7 @@ fn expected_with(function: &Function, pool: &[u32], turned: Option<usize>) -> Ve
         let column = |input: Input| columns.iter().find(|(known, _)| *known == input).unwrap().1;
         let given = |input: Input| match input.kind() {
             Kind::Word => row[column(input)].into(),
-            Kind::Number => (row[column(input)] as i32).into(),
+            Kind::Number | Kind::Binary => (row[column(input)] as i32).into(),
         };
         let values = run_changed(&function.lines, given, |line, value| {
             // The value has to stay in its range.
@@ -132,6 +132,7 @@ fn expected_with(function: &Function, pool: &[u32], turned: Option<usize>) -> Ve
         });
         match function.result {
             Result::Fragment(channels) => out.extend(channels.map(|channel| value_of(&values, channel) as u32)),
+            Result::Pixel { .. } => panic!("no whole pixel was asked for"),
             Result::Stored { word, test } => {
                 let passed =
                     test.is_none_or(|Test(test, [a, b])| test.passes(value_of(&values, a), value_of(&values, b)));
@@ -200,7 +201,7 @@ impl Batch<'_> {
                     let _ = writeln!(text, "    int32_t fragment[4];\n    case{n}(pixel{constants}, fragment);");
                     text += "    for (int c = 0; c < 4; c++) out[c] = (uint32_t)fragment[c];\n}\n";
                 }
-                Result::Stored { .. } => {
+                Result::Stored { .. } | Result::Pixel { .. } => {
                     let _ = writeln!(text, "    out[1] = (uint32_t)case{n}(pixel{constants}, out);\n}}");
                 }
             }
@@ -254,7 +255,7 @@ impl Batch<'_> {
                     let port = Language::Verilog.input(input);
                     match input.kind() {
                         Kind::Word => format!(".{port}(c{column})"),
-                        Kind::Number => format!(".{port}(c{column}[8:0])"),
+                        Kind::Number | Kind::Binary => format!(".{port}(c{column}[8:0])"),
                     }
                 })
                 .collect();
@@ -264,7 +265,7 @@ impl Batch<'_> {
                     ports.extend(["r", "g", "b", "a"].map(|c| format!(".out_{c}({c}{n})")));
                     format!("{{24'd0, r{n}, 24'd0, g{n}, 24'd0, b{n}, 24'd0, a{n}}}")
                 }
-                Result::Stored { .. } => {
+                Result::Stored { .. } | Result::Pixel { .. } => {
                     text += &format!("    wire passed{n};\n    wire [31:0] word{n};\n");
                     ports.extend([format!(".passed(passed{n})"), format!(".word(word{n})")]);
                     format!("{{word{n}, 31'd0, passed{n}, 64'd0}}")
@@ -312,7 +313,7 @@ impl Batch<'_> {
                 let uniform = if function.uniform { "    NinebitConstants constants;\n" } else { "" };
                 let call = match function.result {
                     Result::Fragment(_) => format!("    result = uvec4(shade(pixel{constants}));\n"),
-                    Result::Stored { .. } => format!(
+                    Result::Stored { .. } | Result::Pixel { .. } => format!(
                         "    uint word;\n    bool passed = shade(pixel{constants}, word);\n    result = uvec4(word, passed ? 1u : 0u, 0u, 0u);\n"
                     ),
                 };
@@ -325,7 +326,7 @@ impl Batch<'_> {
                 let uniform = if function.uniform { "    var constants: NinebitConstants;\n" } else { "" };
                 let call = match function.result {
                     Result::Fragment(_) => format!("    result[row] = vec4<u32>(shade(pixel{constants}));\n"),
-                    Result::Stored { .. } => format!(
+                    Result::Stored { .. } | Result::Pixel { .. } => format!(
                         "    let stored = shade(pixel{constants});\n    result[row] = vec4<u32>(stored.word, u32(stored.passed), 0u, 0u);\n"
                     ),
                 };

@@ -191,6 +191,16 @@ impl<'a> TriangleContext<'a> {
         }
     }
 
+    /// Returns x and y of the corners in 1/16 pixel.
+    pub fn positions(&self) -> [[i32; 2]; 3] {
+        self.corners().map(|corner| corner.position)
+    }
+
+    /// Returns the primary and the secondary colour of the corners.
+    pub fn colors(&self) -> [[[u8; 4]; 3]; 2] {
+        [self.primary, self.secondary]
+    }
+
     /// STP-1: returns whether the pattern of filled triangles leaves a pixel out.
     #[inline]
     pub fn is_stippled(&self, i: i64, j: i64) -> bool {
@@ -200,7 +210,7 @@ impl<'a> TriangleContext<'a> {
 
     /// Returns the triangle's vertices.
     #[inline(always)]
-    pub(crate) fn vertices(&self) -> TriangleVertices<'a> {
+    pub fn vertices(&self) -> TriangleVertices<'a> {
         self.draw.assembly.triangle(self.number)
     }
 

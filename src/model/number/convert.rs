@@ -1,5 +1,7 @@
 //! Conversion of floats: a single-precision number is split into integers once, and no float arithmetic follows.
 
+use super::Integer;
+
 /// Returns (mantissa, exponent) with `f` = mantissa * 2^exponent exactly. `f` must be finite.
 #[inline(always)]
 pub fn split(f: f32) -> (i64, i32) {
@@ -31,24 +33,11 @@ fn scaled_in_128_bits(n: i64, by: i64, exponent: i32) -> i64 {
     shift(i128::from(n) * i128::from(by), exponent) as i64
 }
 
-/// Converts numbers, each a mantissa and an exponent, to block floating point. The number of the largest magnitude
-/// keeps exactly `keep` bits (at most 62), and the others are floored to the same exponent. Returns the mantissas and
-/// that exponent.
+/// Like [`align`](super::align), of numbers with exponents in 32 bits.
 #[inline(always)]
 pub(crate) fn align<const N: usize>(values: [(i64, i32); N], keep: i32) -> ([i64; N], i32) {
-    let mut top = i32::MIN;
-    for (n, exponent) in values {
-        let bits = 64 - n.unsigned_abs().leading_zeros() as i32 + exponent;
-        top = top.max(if n == 0 { i32::MIN } else { bits });
-    }
-    let top = if top == i32::MIN { 0 } else { top };
-    let mut aligned = [0; N];
-    for (out, (n, exponent)) in aligned.iter_mut().zip(values) {
-        let up = exponent + keep - top;
-        // A number other than 0 that is shifted up stays within `keep` bits.
-        *out = if up >= 0 { n << up.min(63) } else { n >> (-up).min(63) };
-    }
-    (aligned, top - keep)
+    let (aligned, exponent) = super::align(values.map(|(n, exponent)| (n, exponent.into())), keep.into());
+    (aligned, exponent as i32)
 }
 
 /// NUM-4: converts a channel of a float vertex colour to a byte: clamped to 0..1, truncated to 14 significant bits,
@@ -77,10 +66,10 @@ pub fn factor_byte(v: i64) -> u8 {
     factor(v as i32) as u8
 }
 
-/// Like [`factor_byte`], in 32 bits.
+/// Like [`factor_byte`], of any whole number.
 #[inline(always)]
-pub(crate) fn factor(v: i32) -> i32 {
-    ((v - (v >> 8)) >> 4) & 255
+pub fn factor<I: Integer>(v: I) -> I {
+    (v - v.down(I::new(8))).down(I::new(4)).masked(255)
 }
 
 /// NUM-0: converts a float constant to a byte: floor(255 c + 1/2) after clamping to 0..1, computed exactly. NaN counts

@@ -48,6 +48,7 @@ macro_rules! componentwise {
 pub(crate) mod block;
 pub mod convert;
 mod ideal_tracks;
+mod integer;
 mod lanes16;
 pub mod light;
 mod paired;
@@ -57,6 +58,8 @@ mod scalar;
 
 pub use block::{Halved, Narrow, Quarter, Swar2};
 pub use ideal_tracks::{IDEAL_TRACKS, IdealTracks};
+pub use integer::{Choice, Integer};
+pub(crate) use integer::{LEAST_TOP, align};
 pub use lanes16::{LANES, Lanes16};
 pub use paired::Paired;
 pub use part::Part;

@@ -7,6 +7,7 @@ use super::binary::Binary;
 use super::setup::Triangle;
 use super::stroke::Figure;
 use super::weights::{Number, Weights, difference, ratios};
+use crate::number::Integer;
 use crate::number::convert::{align, depth as fraction, split};
 use crate::state::{DepthFormat, DepthRange, DepthTest, PolygonOffset, VertexDepths};
 
@@ -71,52 +72,58 @@ impl DepthPlane {
     /// DEP-5: adds the offset to a depth.
     #[inline]
     pub(crate) fn with_offset(&self, depth: Binary) -> Binary {
-        if self.offset.mantissa == 0 { depth } else { depth.plus(self.offset, SUM_BITS) }
+        if self.offset.mantissa == 0 { depth } else { moved(depth, self.offset) }
     }
+}
+
+/// DEP-5: returns the sum of a depth and an offset.
+#[inline]
+pub fn moved<I: Integer>(depth: Binary<I>, offset: Binary<I>) -> Binary<I> {
+    depth.plus(offset, SUM_BITS)
 }
 
 /// DEP-4: limits a depth to the range. Returns `None` if the pixel is dropped.
 #[inline]
 pub fn ranged(range: Option<&DepthRange>, depth: Binary) -> Option<Binary> {
     let Some(range) = range else { return Some(depth) };
-    let (lowest, highest) = (Binary::new(range.lowest), Binary::new(range.highest));
-    match (depth.is_below(lowest), highest.is_below(depth)) {
-        (false, false) => Some(depth),
-        (true, _) => range.clamps.then_some(lowest),
-        _ => range.clamps.then_some(highest),
-    }
+    let (depth, is_outside) = limited(range, depth);
+    (range.clamps || !is_outside).then_some(depth)
+}
+
+/// DEP-4: limits a depth to a range, and returns whether it was outside.
+#[inline]
+pub fn limited<I: Integer>(range: &DepthRange, depth: Binary<I>) -> (Binary<I>, I::Choice) {
+    let [lowest, highest] = [range.lowest, range.highest].map(Binary::<I>::from_f32);
+    let (below, above) = (depth.is_below(lowest), highest.is_below(depth));
+    (lowest.or(below, highest.or(above, depth)), below | above)
 }
 
 /// DEP-3: returns the stored word of a depth in steps.
 #[inline]
-pub fn word(format: DepthFormat, Binary { mantissa, exponent }: Binary) -> u32 {
-    if mantissa <= 0 {
-        return 0;
-    }
-    let bits = 64 - mantissa.leading_zeros() as i32;
+pub fn word(format: DepthFormat, depth: Binary) -> u32 {
+    stored(format, depth) as u32
+}
+
+/// DEP-3: returns the stored word of a depth in steps as a number.
+#[inline(always)]
+pub fn stored<I: Integer>(format: DepthFormat, depth: Binary<I>) -> I {
+    let (zero, full) = (I::new(0), i64::from(format.largest()));
     if !format.is_float() {
-        let full = format.largest();
-        return if bits + exponent > 31 {
-            full
-        } else if exponent >= 0 {
-            ((mantissa << exponent) as u32).min(full)
-        } else {
-            ((mantissa >> (-exponent).min(63)) as u32).min(full)
-        };
+        return depth.far_floored(I::new(1), zero, I::new(full)).greatest(zero);
     }
     // The pattern of binary32, truncated to the bits of the format.
-    let (kept, bias) = match format {
-        DepthFormat::Z16F => (12, 7),
-        _ => (16, 127),
+    let (kept, bias, most) = match format {
+        DepthFormat::Z16F => (12, 7, 15),
+        _ => (16, 127, 254),
     };
-    let power = bits - 1 + exponent;
-    let up = kept - (bits - 1);
-    let fraction = (if up >= 0 { mantissa << up } else { mantissa >> -up }) & ((1 << kept) - 1);
-    match power + bias {
-        ..=0 => 0,
-        beyond if beyond > if format == DepthFormat::Z16F { 15 } else { 254 } => format.largest(),
-        field => (field as u32) << kept | fraction as u32,
-    }
+    let mantissa = depth.mantissa.greatest(zero);
+    let last = mantissa.bits() - I::new(1);
+    let up = I::new(kept) - last;
+    let pattern = mantissa.down((zero - up).limited(0, 63)).or(up.is_negative(), mantissa.up(up.limited(0, 63)));
+    let field = last + depth.exponent + I::new(bias);
+    let word = I::new(full)
+        .or(I::new(most).is_below(field), field.limited(0, most).up(I::new(kept)) + pattern.masked((1 << kept) - 1));
+    word.or(zero.is_below(mantissa) & zero.is_below(field), zero)
 }
 
 /// Returns the depth in steps that is stored as a word, or `None` if none is: a float whose exponent is 0, or beyond the numbers.
@@ -131,10 +138,10 @@ pub fn of_word(format: DepthFormat, word: u32) -> Option<f32> {
 }
 
 /// Bits of the larger of a depth and its offset that their sum keeps: so many that nothing is lost where they cancel.
-const SUM_BITS: i32 = 62;
+const SUM_BITS: i64 = 62;
 
 /// Bits of the larger part of an offset. The sum of both parts has one more.
-const OFFSET_BITS: i32 = 60;
+const OFFSET_BITS: i64 = 60;
 
 /// DEP-5: returns the offset of a triangle from bias, factor and slope.
 #[cold]
@@ -143,8 +150,8 @@ pub fn offset(PolygonOffset { bias, factor }: PolygonOffset, slope: Binary) -> B
     let product = i128::from(slope.mantissa) * i128::from(of_factor);
     let dropped = (128 - product.unsigned_abs().leading_zeros()).saturating_sub(OFFSET_BITS as u32);
     let odd = i64::from(product >> dropped << dropped != product);
-    let scaled =
-        Binary { mantissa: (product >> dropped) as i64 | odd, exponent: slope.exponent + exponent + dropped as i32 };
+    let exponent = slope.exponent + i64::from(exponent) + i64::from(dropped);
+    let scaled = Binary { mantissa: (product >> dropped) as i64 | odd, exponent };
     Binary::new(bias).plus(scaled, OFFSET_BITS)
 }
 
@@ -161,7 +168,7 @@ pub fn slope(triangle: &Triangle, z: [f32; 3]) -> Binary {
     let dropped = KEPT - 29;
     let steepest = along(triangle.a).max(along(triangle.b));
     let mantissa = steepest / (i128::from(triangle.doubled_area) << dropped);
-    Binary { mantissa: mantissa as i64, exponent: exponent + dropped }
+    Binary { mantissa: mantissa as i64, exponent: i64::from(exponent + dropped) }
 }
 
 /// DEP-1: returns the weights of the vertices, of which the [shares](Weights::shares) count. They are linear on the screen.
@@ -173,7 +180,9 @@ pub(crate) fn weights(e: [i64; 3]) -> Weights<Binary> {
 /// DEP-1: returns z_d + sum of b_k (z_k - z_d) with each term cut at the 29th bit of the largest.
 #[inline]
 pub fn interpolate(e: [i64; 3], z: [f32; 3]) -> Binary {
-    sum_of_terms(weights(e).shares, z, largest_edge(e))
+    let reference = largest_edge(e);
+    let choice = reference_vertex(e);
+    sum_of_terms(weights(e).shares, Binary::new(z[reference]), differences(z, reference), choice)
 }
 
 /// DEP-6: returns w_1 + b_0 (w_0 - w_1) + b_2 (w_2 - w_1) with perspective weights, each term cut as in DEP-1.
@@ -182,30 +191,45 @@ fn interpolate_w(e: [i64; 3], w: [f32; 3]) -> Binary {
     let Weights { shares: mut b, dominant, .. } = Weights::new(e.map(Binary::from_edge), Some(ratios));
     // Cut, not rounded up as in WGT-1.
     let others = [b[(dominant + 1) % 3], b[(dominant + 2) % 3]].map(|b| (b.mantissa, b.exponent));
-    let ([whole, one, other], exponent) = align([(1, 0), others[0], others[1]], 61);
+    let ([whole, one, other], exponent) = crate::number::align([(1, 0), others[0], others[1]], 61);
     b[dominant] = Binary { mantissa: whole - one - other, exponent }.cut();
-    sum_of_terms(b, w, 1)
+    sum_of_terms(b, Binary::new(w[1]), differences(w, 1), [false, true, false])
 }
 
-/// Returns the sum of the reference vertex's number and of the weighted differences from it, each cut at the 29th bit of the largest.
-fn sum_of_terms(b: [Binary; 3], values: [f32; 3], reference: usize) -> Binary {
-    Binary::aligned_sum::<29>(std::array::from_fn(|k| match k == reference {
-        true => Binary::new(values[k]),
-        false => b[k].times(Binary::new(difference(values[k], values[reference]))),
-    }))
+/// Returns the differences of numbers from that of the reference vertex.
+fn differences(values: [f32; 3], reference: usize) -> [Binary; 3] {
+    values.map(|value| Binary::new(difference(value, values[reference])))
+}
+
+/// DEP-1: returns the sum of the reference vertex's number and of the weighted differences from it, each cut at the 29th bit of the largest.
+#[inline(always)]
+pub fn sum_of_terms<N: Number>(b: [N; 3], value: N, differences: [N; 3], is_reference: [N::Choice; 3]) -> N {
+    let one = N::from_edge(1);
+    let term = |k: usize| [one.or(is_reference[k], b[k]), value.or(is_reference[k], differences[k])];
+    sum_of_products([term(0), term(1), term(2)])
+}
+
+/// DEP-1: returns the sum of products, each cut at the 29th bit of the largest.
+#[inline(always)]
+pub fn sum_of_products<N: Number>([[a, b], [c, d], [e, f]]: [[N; 2]; 3]) -> N {
+    N::aligned_sum::<29>([a.times(b), c.times(d), e.times(f)])
 }
 
 /// DEP-1: returns the vertex whose edge number has the largest binary exponent. Among equals, vertex 1 comes first,
 /// then 0, then 2.
 pub fn largest_edge(e: [i64; 3]) -> usize {
-    let [first, second, third] = e.map(|e| if e > 0 { 64 - e.leading_zeros() } else { 0 });
-    if second >= first && second >= third {
-        1
-    } else if first >= third {
-        0
-    } else {
-        2
-    }
+    let [first, second, _] = reference_vertex(e);
+    if second { 1 } else { usize::from(!first) * 2 }
+}
+
+/// DEP-1: returns which vertex is [that](largest_edge).
+#[inline(always)]
+pub fn reference_vertex<I: Integer>(e: [I; 3]) -> [I::Choice; 3] {
+    let length = |k: usize| e[k].greatest(I::new(0)).bits();
+    let [first, second, third] = [length(0), length(1), length(2)];
+    let of_second = !(second.is_below(first) | second.is_below(third));
+    let of_first = !of_second & !first.is_below(third);
+    [of_first, of_second, !(of_first | of_second)]
 }
 
 #[cfg(test)]
@@ -275,17 +299,17 @@ mod tests {
         /// Sums and comparisons are those of whole numbers with all bits, as far as shorter numbers can tell.
         #[test]
         fn sums_compare_as_exact_ones(
-            a in (-(1_i64 << 31)..1 << 31, 0_i32..64),
-            b in (-(1_i64 << 61)..1 << 61, 0_i32..64, 0_u32..60),
-            c in (-(1_i64 << 24)..1 << 24, 0_i32..90),
+            a in (-(1_i64 << 31)..1 << 31, 0_i64..64),
+            b in (-(1_i64 << 61)..1 << 61, 0_i64..64, 0_u32..60),
+            c in (-(1_i64 << 24)..1 << 24, 0_i64..90),
             near in any::<bool>(),
         ) {
-            let exact = |mantissa: i64, exponent: i32| i128::from(mantissa) << exponent.min(63);
+            let exact = |mantissa: i64, exponent: i64| i128::from(mantissa) << exponent.min(63);
             let (depth, offset) = (Binary { mantissa: a.0, exponent: a.1 }, Binary { mantissa: b.0 >> b.2, exponent: b.1 });
             let wanted = exact(depth.mantissa, depth.exponent) + exact(offset.mantissa, offset.exponent);
             let sum = depth.plus(offset, SUM_BITS);
             // Beside the sum, or anywhere.
-            let dropped = (128 - wanted.unsigned_abs().leading_zeros()).saturating_sub(24) as i32;
+            let dropped = (128 - wanted.unsigned_abs().leading_zeros()).saturating_sub(24).into();
             let short = if near && dropped < 64 { ((wanted >> dropped) as i64 + c.0.signum(), dropped) } else { (c.0, c.1.min(63)) };
             let limit = Binary { mantissa: short.0, exponent: short.1 };
             prop_assert_eq!(sum.is_below(limit), wanted < exact(short.0, short.1));
@@ -352,9 +376,9 @@ mod tests {
         let (with, triangle) = plane(0.0, 16.0, p);
         let slope = slope(&triangle, with.z);
         assert_eq!((slope.mantissa, slope.exponent), (486 * 16 + 7, -4));
-        assert_eq!(with.offset.mantissa as f64 * 2.0_f64.powi(with.offset.exponent), 7783.0);
+        assert_eq!(with.offset.mantissa as f64 * 2.0_f64.powi(with.offset.exponent as i32), 7783.0);
         let (biased, _) = plane(-0.5, 16.0, p);
-        assert_eq!(biased.offset.mantissa as f64 * 2.0_f64.powi(biased.offset.exponent), 7782.5);
+        assert_eq!(biased.offset.mantissa as f64 * 2.0_f64.powi(biased.offset.exponent as i32), 7782.5);
     }
 
     /// Words of captured buffers, from TriH and LargeZ.
@@ -371,7 +395,7 @@ mod tests {
         // Equal w are exact.
         assert_eq!(
             interpolate_w([5, 70_000, 3], [10.0; 3]).mantissa as f64
-                * 2.0_f64.powi(interpolate_w([5, 70_000, 3], [10.0; 3]).exponent),
+                * 2.0_f64.powi(interpolate_w([5, 70_000, 3], [10.0; 3]).exponent as i32),
             10.0
         );
     }

@@ -7,11 +7,12 @@
 use super::binary::Binary;
 use super::interpolate::Sample;
 use super::weights::{Linear, Number};
+use crate::number::Integer;
 use crate::number::convert::factor_byte;
 use crate::state::{FogFunction, FogMode};
 
 /// Number of fraction bits of 4096ths.
-pub(crate) const FACTOR_BITS: i32 = 12;
+pub(crate) const FACTOR_BITS: i64 = 12;
 
 /// 3/2 in 4096ths, which is subtracted from e.
 pub(crate) const CENTRE: i64 = 6144;
@@ -22,8 +23,9 @@ pub(crate) const TABLE_END: i64 = 2048;
 /// Limit of e in 4096ths, which is far beyond the tables.
 const FARTHEST: i64 = 1 << 40;
 
-/// Width of a segment of the tables, in 4096ths.
-const SEGMENT: i64 = 64;
+/// Width of a segment of the tables, in 4096ths, and its binary logarithm.
+const SEGMENT: i64 = 1 << SEGMENT_BITS;
+const SEGMENT_BITS: i64 = 6;
 
 /// Table of FOG-4's exponential: floor(255 2^(-i/4) + 1/2).
 pub const EXPONENTIAL: [u8; 33] = [
@@ -63,7 +65,7 @@ pub struct Line {
 
 /// The function of an interpolated fog coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Curve {
+pub enum Curve {
     /// FOG-2.
     Line(Line),
     /// FOG-4.
@@ -72,7 +74,7 @@ pub(crate) enum Curve {
 
 impl Curve {
     /// Returns the curve of a function, or `None` if its numbers are not finite.
-    pub(crate) fn new(function: &FogFunction) -> Option<Curve> {
+    pub fn new(function: &FogFunction) -> Option<Curve> {
         let mode = function.mode;
         if !mode.is_linear() {
             return Some(Curve::Table(mode));
@@ -106,7 +108,7 @@ pub enum FogStep {
 }
 
 /// INT-5n: limits a factor to 0..1. NaN, which clipping makes of infinite factors, counts as 0.
-pub(crate) fn limited(factor: f32) -> f32 {
+pub fn limited(factor: f32) -> f32 {
     if factor.is_nan() { 0.0 } else { factor.clamp(0.0, 1.0) }
 }
 
@@ -138,7 +140,7 @@ impl FogPlane {
                 FogFactor { byte: factor_byte(v), from: FogStep::Linear(v, coordinate) }
             }
             FogPlane::Exponential(mode, e) => {
-                let q = sample.value(e).floored(1, FACTOR_BITS, FARTHEST) - CENTRE;
+                let q = steps(sample.value(e));
                 FogFactor { byte: exponential(*mode, q), from: FogStep::Exponential(q) }
             }
             FogPlane::NotFinite(byte) => FogFactor { byte: *byte, from: FogStep::NotFinite },
@@ -147,12 +149,19 @@ impl FogPlane {
 }
 
 /// NUM-6: returns a factor in 4096ths, 0..=4096.
-pub fn factor(f: Binary) -> i64 {
-    f.floored(1, FACTOR_BITS, 1 << FACTOR_BITS).max(0)
+#[inline]
+pub fn factor<I: Integer>(f: Binary<I>) -> I {
+    f.floored(I::new(1), I::new(FACTOR_BITS), I::new(1 << FACTOR_BITS)).greatest(I::new(0))
+}
+
+/// FOG-4: returns the steps of 1/4096 by which e lies above 3/2.
+#[inline]
+pub fn steps<I: Integer>(e: Binary<I>) -> I {
+    e.far_floored(I::new(1), I::new(FACTOR_BITS), I::new(FARTHEST)) - I::new(CENTRE)
 }
 
 /// FOG-4, FOG-5: returns the byte of a triangle with a value that is not finite.
-pub(crate) fn not_finite(mode: FogMode) -> u8 {
+pub fn not_finite(mode: FogMode) -> u8 {
     match mode {
         FogMode::Linear | FogMode::LinearAbs | FogMode::Exp => 255,
         FogMode::Exp2 | FogMode::ExpAbs | FogMode::Exp2Abs => 0,
@@ -162,26 +171,33 @@ pub(crate) fn not_finite(mode: FogMode) -> u8 {
 /// FOG-4: returns the byte for q, the steps of 1/4096 by which e lies above 3/2. The mode must not be linear.
 #[inline]
 pub fn exponential(mode: FogMode, q: i64) -> u8 {
-    if matches!(mode, FogMode::Exp) && q >= 0 {
-        return 255;
-    }
-    let table = if matches!(mode, FogMode::Exp | FogMode::ExpAbs) { &EXPONENTIAL } else { &SQUARED };
-    let n = q.saturating_abs();
-    if n >= TABLE_END {
-        return 0;
-    }
-    let (i, w) = ((n / SEGMENT) as usize, n % SEGMENT);
-    ((table[i] as i64 * (SEGMENT - w) + table[i + 1] as i64 * w + SEGMENT / 2) / SEGMENT) as u8
+    tabled(mode, q.clamp(-FARTHEST, FARTHEST)) as u8
+}
+
+/// [`exponential`] of any whole number.
+#[inline(always)]
+pub fn tabled<I: Integer>(mode: FogMode, q: I) -> I {
+    let table: &'static [u8] = if matches!(mode, FogMode::Exp | FogMode::ExpAbs) { &EXPONENTIAL } else { &SQUARED };
+    let n = q.magnitude();
+    let is_beyond = I::new(TABLE_END - 1).is_below(n);
+    let n = n.least(I::new(TABLE_END - 1));
+    let (i, w) = (n.down(I::new(SEGMENT_BITS)), n.masked(SEGMENT - 1));
+    let (from, to) = (i.entry(table), (i + I::new(1)).entry(table));
+    let sum = from * (I::new(SEGMENT) - w) + to * w + I::new(SEGMENT / 2);
+    let byte = I::new(0).or(is_beyond, sum.down(I::new(SEGMENT_BITS)));
+    if matches!(mode, FogMode::Exp) { byte.or(q.is_negative(), I::new(255)) } else { byte }
 }
 
 impl Line {
     /// FOG-2: returns the factor v, 0..=4096, at a coordinate of 24 bits. p0 and p1 must be finite.
-    pub(crate) fn at(&self, coordinate: Binary) -> i64 {
-        let magnitude = Binary { mantissa: coordinate.mantissa.abs(), ..coordinate };
-        let d = if self.absolute { magnitude } else { coordinate };
+    #[inline]
+    pub fn at<I: Integer>(&self, coordinate: Binary<I>) -> I {
+        let d = if self.absolute { coordinate.mantissa.magnitude() } else { coordinate.mantissa };
+        let [p0, p1] = [self.p0, self.p1].map(Binary::<I>::from_f32);
         // An exact product of 48 bits.
-        let sum = Binary::new(self.p0).floored_sum(d.times(Binary::new(self.p1)), 1, FACTOR_BITS, FARTHEST);
-        (sum - (1 << FACTOR_BITS)).clamp(0, 1 << FACTOR_BITS)
+        let product = Binary { mantissa: d, ..coordinate }.times(p1);
+        let sum = p0.floored_sum(product, I::new(1), I::new(FACTOR_BITS), I::new(FARTHEST));
+        (sum - I::new(1 << FACTOR_BITS)).limited(0, 1 << FACTOR_BITS)
     }
 }
 

@@ -3,7 +3,7 @@
 use super::binary::Binary;
 use super::setup::Triangle;
 use super::weights::{Linear, Number, Weights};
-use crate::number::Blend;
+use crate::number::{Blend, Integer};
 use std::cell::OnceCell;
 
 /// INT-2: interpolates a colour channel of the vertices with weights W0 and W2. The second vertex gets the remainder.
@@ -50,7 +50,7 @@ impl<'a> Sample<'a> {
     #[inline]
     pub fn color_weights(&self) -> [i64; 2] {
         let [first, _, third] = self.weights().b;
-        [first, third].map(|b| b.floored(1, 8, 256))
+        [first, third].map(color_weight)
     }
 
     /// Returns whether the sample lies behind the viewer, where the sum of the edge numbers is not positive. No sample inside of the triangle does.
@@ -59,34 +59,37 @@ impl<'a> Sample<'a> {
     }
 }
 
+/// INT-2: returns a weight of colours, 0..=256.
+#[inline(always)]
+pub fn color_weight<I: Integer>(b: Binary<I>) -> I {
+    b.floored(I::new(1), I::new(8), I::new(256))
+}
+
 /// INT-4: returns a coordinate of an image of `size` texels in 1/256 texel.
 #[inline]
-pub fn coordinate(value: Binary, size: u32) -> i64 {
-    value.floored(size, 8, COORDINATE_LIMIT)
+pub fn coordinate<I: Integer>(value: Binary<I>, size: I) -> I {
+    value.floored(size, I::new(8), I::new(COORDINATE_LIMIT))
 }
 
 /// TEX-15: returns s/q of an image of `size` texels in 1/256 texel. A division by 0 is infinite; 0/0 is 0.
 #[inline]
-pub fn ratio(s: Binary, q: Binary, size: u32) -> i64 {
-    if q.mantissa == 0 {
-        return COORDINATE_LIMIT * s.mantissa.signum();
-    }
-    s.floored_ratio(q, size, 8, COORDINATE_LIMIT)
+pub fn ratio<I: Integer>(s: Binary<I>, q: Binary<I>, size: I) -> I {
+    let (zero, limit) = (I::new(0), I::new(COORDINATE_LIMIT));
+    let infinite = zero.or(s.mantissa.is_zero(), limit.negated(s.mantissa.is_negative()));
+    infinite.or(q.mantissa.is_zero(), s.floored_ratio::<false>(q, size, I::new(8), limit))
 }
 
 /// TEX-12: returns floor(2^`bits` n (s + m) / 2 m) of a face of n texels, for a minor direction s and the major direction m. It is 0 where m is not
 /// positive, as for the zero vector (TEX-13).
 #[inline]
-pub fn face_coordinate(s: Binary, m: Binary, size: u32, bits: i32) -> i64 {
-    if m.mantissa <= 0 {
-        return 0;
-    }
-    let half = i64::from(size) << (bits - 1);
-    half + s.floored_ratio(m, size, bits - 1, FARTHEST)
+pub fn face_coordinate<I: Integer>(s: Binary<I>, m: Binary<I>, size: I, bits: i64) -> I {
+    let (zero, power) = (I::new(0), I::new(bits - 1));
+    let coordinate = size.up(power) + s.floored_ratio::<true>(m, size, power, I::new(FARTHEST));
+    coordinate.or(zero.is_below(m.mantissa), zero)
 }
 
 /// Limit of coordinates in 1/65536 texel: they reach it only outside of the triangle.
-pub(crate) const FARTHEST: i64 = 1 << 61;
+pub const FARTHEST: i64 = 1 << 61;
 
 #[cfg(test)]
 mod tests {

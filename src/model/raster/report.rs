@@ -8,13 +8,13 @@ use crate::trace::{Observer, Operand, Step, float_step, plain};
 /// Returns a step that yields a number of WGT-1.
 pub(crate) fn number_step(block: &str, rule: &'static str, name: impl Into<String>, value: Binary) -> Step {
     let Binary { mantissa, exponent } = shortest(value);
-    Step { exponent, ..Step::given(block, rule, name, mantissa) }
+    Step { exponent: exponent as i32, ..Step::given(block, rule, name, mantissa) }
 }
 
 /// Returns a number of WGT-1 as an operand.
 pub(crate) fn number(name: impl Into<String>, value: Binary) -> Operand {
     let Binary { mantissa, exponent } = shortest(value);
-    Operand { exponent, ..plain(name, mantissa) }
+    Operand { exponent: exponent as i32, ..plain(name, mantissa) }
 }
 
 /// Returns the same number as a whole one if it fits, otherwise with an odd mantissa.
@@ -22,12 +22,12 @@ fn shortest(n: Binary) -> Binary {
     if n.mantissa == 0 {
         return Binary::default();
     }
-    let zeros = n.mantissa.trailing_zeros() as i32;
+    let zeros = n.mantissa.trailing_zeros().into();
     match n.exponent {
         0.. if n.top() <= 62 => Binary { mantissa: n.steps(0), exponent: 0 },
         exponent if exponent >= 0 => n,
         exponent => {
-            let down = zeros.min(-exponent);
+            let down = (-exponent).min(zeros);
             Binary { mantissa: n.mantissa >> down, exponent: exponent + down }
         }
     }

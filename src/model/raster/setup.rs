@@ -4,9 +4,9 @@ use super::GUARD;
 use super::binary::Binary;
 use super::stroke::{Figure, Side};
 use super::weights::ratios;
+use crate::number::Integer;
 use crate::number::convert::{snap, w_16_bits};
 use crate::state::{FrontFace, Profile};
-use std::ops::{Add, Mul, Shr, Sub};
 
 /// A triangle that is set up for drawing.
 ///
@@ -89,14 +89,24 @@ impl Triangle {
     #[inline]
     pub fn edges(&self, i: i64, j: i64) -> [i64; 3] {
         // Not by a function on arrays, which is not always inlined.
-        let edge = |k: usize| self.a[k] * i + self.b[k] * j + self.c[k];
+        let edge = |k: usize| edge_function([self.a[k], self.b[k], self.c[k]], i, j);
         [edge(0), edge(1), edge(2)]
+    }
+
+    /// Returns the three edge functions: slopes along x and y, value at the centre of pixel (0, 0).
+    pub fn edge_functions(&self) -> [[i64; 3]; 3] {
+        [0, 1, 2].map(|k| [self.a[k], self.b[k], self.c[k]])
+    }
+
+    /// Returns whether a sample exactly on an edge belongs to the triangle (RAS-3).
+    pub fn owns(&self) -> [bool; 3] {
+        self.owns
     }
 
     /// RAS-3: returns whether the triangle covers a sample with these edge functions.
     #[inline]
     pub fn covers(&self, e: [i64; 3]) -> bool {
-        (0..3).all(|k| e[k] > 0 || (e[k] == 0 && self.owns[k]))
+        (0..3).all(|k| is_inside(e[k], self.owns[k]))
     }
 
     /// Returns whether it covers a pixel.
@@ -125,43 +135,50 @@ impl Triangle {
     }
 }
 
-/// Whole numbers that hold the products of coordinates: 64 bits anywhere, 32 near a small triangle.
-pub(crate) trait Whole:
-    Copy + Ord + From<i32> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Shr<u32, Output = Self>
-{
-}
-
-impl Whole for i32 {}
-impl Whole for i64 {}
-
 /// The edge functions of a triangle, as [`Triangle`] has them, and twice its signed area. Without branches, so that those of many triangles can be
 /// computed at a time.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct EdgeFunctions<T> {
-    pub(crate) a: [T; 3],
-    pub(crate) b: [T; 3],
-    pub(crate) c: [T; 3],
-    pub(crate) owns: [bool; 3],
+pub struct EdgeFunctions<T: Integer> {
+    /// Slopes along x.
+    pub a: [T; 3],
+    /// Slopes along y.
+    pub b: [T; 3],
+    /// Values at the centre of pixel (0, 0).
+    pub c: [T; 3],
+    /// Whether a sample exactly on the edge belongs to the triangle (RAS-3).
+    pub owns: [T::Choice; 3],
     /// In 1/256 square pixel, positive if the triangle turns clockwise.
-    pub(crate) area: T,
+    pub area: T,
 }
 
-impl<T: Whole> EdgeFunctions<T> {
-    /// Returns the edge functions between x and y after RAS-1, in 1/16 pixel.
+impl<T: Integer> EdgeFunctions<T> {
+    /// Returns the edge functions between x and y after RAS-1, in 1/16 pixel. They are 0 without an area.
     #[inline(always)]
-    pub(crate) fn new(x: [T; 3], y: [T; 3]) -> EdgeFunctions<T> {
-        let [zero, eight, sixteen] = [T::from(0), T::from(8), T::from(16)];
+    pub fn new(x: [T; 3], y: [T; 3]) -> EdgeFunctions<T> {
+        let [zero, one, eight, sixteen] = [0, 1, 8, 16].map(T::new);
         let area = clockwise_area(x, y);
-        let sign = T::from(i32::from(area > zero) - i32::from(area < zero));
+        let sign = one.or(zero.is_below(area), zero) - one.or(area.is_below(zero), zero);
         let edge = |s: usize, t: usize| {
             let (a, b) = ((y[s] - y[t]) * sign, (x[t] - x[s]) * sign);
-            let owns = (a > zero) | ((a == zero) & (b > zero));
+            let owns = zero.is_below(a) | (a.is_zero() & zero.is_below(b));
             // RAS-2: from 1/16 pixel to the centre (16 i + 8, 16 j + 8) of pixel (i, j).
             (sixteen * a, sixteen * b, eight * (a + b) - (a * x[s] + b * y[s]), owns)
         };
         let [(a0, b0, c0, owns0), (a1, b1, c1, owns1), (a2, b2, c2, owns2)] = [edge(1, 2), edge(2, 0), edge(0, 1)];
         EdgeFunctions { a: [a0, a1, a2], b: [b0, b1, b2], c: [c0, c1, c2], owns: [owns0, owns1, owns2], area }
     }
+}
+
+/// RAS-2: returns an edge function, of which slopes and the value at the centre of pixel (0, 0) are given, at pixel (i, j).
+#[inline(always)]
+pub fn edge_function<I: Integer>([a, b, c]: [I; 3], i: I, j: I) -> I {
+    a * i + b * j + c
+}
+
+/// RAS-3: returns whether an edge has a sample inside, where its edge function is `e`.
+#[inline(always)]
+pub fn is_inside<I: Integer>(e: I, owns: I::Choice) -> I::Choice {
+    I::new(0).is_below(e) | (e.is_zero() & owns)
 }
 
 /// Returns whether a triangle has a single w, so that it needs no ratios.
@@ -175,7 +192,7 @@ pub(crate) fn is_flat(w: [f32; 3], perspective: bool, profile: Profile) -> bool 
 /// Returns twice the area of a triangle in 1/256 square pixel. It is positive if the triangle turns clockwise for the viewer, because y points
 /// down.
 #[inline(always)]
-pub(crate) fn clockwise_area<T: Whole>(x: [T; 3], y: [T; 3]) -> T {
+pub(crate) fn clockwise_area<T: Integer>(x: [T; 3], y: [T; 3]) -> T {
     (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0])
 }
 
@@ -194,9 +211,9 @@ pub fn significant(w: [f32; 3], profile: Profile) -> [f32; 3] {
 /// Returns the half-open range of pixels whose centres lie between three positions in 1/16 pixel. Centres are at 16 n +
 /// 8.
 #[inline(always)]
-pub(crate) fn centres<T: Whole>(n: [T; 3]) -> (T, T) {
-    let (low, high) = (n[0].min(n[1]).min(n[2]), n[0].max(n[1]).max(n[2]));
-    ((low + T::from(7)) >> 4, ((high - T::from(8)) >> 4) + T::from(1))
+pub(crate) fn centres<T: Integer>(n: [T; 3]) -> (T, T) {
+    let (low, high) = (n[0].least(n[1]).least(n[2]), n[0].greatest(n[1]).greatest(n[2]));
+    ((low + T::new(7)).down(T::new(4)), (high - T::new(8)).down(T::new(4)) + T::new(1))
 }
 
 #[cfg(test)]

@@ -12,11 +12,15 @@
 //! that loops over it are the fast engine's; [`Real`] cuts nothing and is the ideal.
 
 use super::binary::Binary;
+use crate::number::{Choice, Integer, LEAST_TOP};
+use crate::state::CompareFunction;
 
 /// A number of the interpolator. Products of two are exact, and nothing is rounded but where a method says so.
 pub trait Number: Copy {
     /// The binary exponent of a positive number; less than any of these for all other numbers.
-    type Exponent: Copy + PartialOrd;
+    type Exponent: Copy;
+    /// Truth of a comparison.
+    type Choice: Choice;
 
     /// Converts an edge function, of at most 39 bits.
     fn from_edge(edge: i64) -> Self;
@@ -42,8 +46,10 @@ pub trait Number: Copy {
     }
     /// Returns the exponent.
     fn exponent(self) -> Self::Exponent;
+    /// Returns whether the first exponent is larger than the second.
+    fn is_above(a: Self::Exponent, b: Self::Exponent) -> Self::Choice;
     /// Returns `self` where `condition` holds, otherwise `other`.
-    fn or(self, condition: bool, other: Self) -> Self;
+    fn or(self, condition: Self::Choice, other: Self) -> Self;
 }
 
 /// The weights of a pixel and the numbers on the way to them.
@@ -63,7 +69,7 @@ pub struct Weights<N> {
     pub b: [N; 3],
 }
 
-impl<N: Number> Weights<N> {
+impl<N: Number<Choice = bool>> Weights<N> {
     /// Returns the weights where the edge functions are `e`. `ratios` are the [`ratios`] of the vertices if their w differ.
     #[inline(always)]
     pub fn new(e: [N; 3], ratios: Option<[N; 3]>) -> Weights<N> {
@@ -103,10 +109,10 @@ pub fn shares<N: Number>(edges: [N; 3], reciprocal: N) -> [N; 3] {
 /// WGT-1: returns whether the first and whether the third weight dominates. The second does if neither does. Among weights of the same exponent
 /// the first precedes the second, the second the third and the third the first; of three, the third dominates.
 #[inline(always)]
-pub fn dominance<N: Number>(b: [N; 3]) -> [bool; 2] {
+pub fn dominance<N: Number>(b: [N; 3]) -> [N::Choice; 2] {
     let [x, y, z] = [b[0].exponent(), b[1].exponent(), b[2].exponent()];
-    let first = (x >= y) & (x > z);
-    [first, !(first | ((y >= z) & (y > x)))]
+    let first = !N::is_above(y, x) & N::is_above(x, z);
+    [first, !(first | (!N::is_above(z, y) & N::is_above(y, x)))]
 }
 
 /// WGT-1: returns the weights of shares: the dominant one is the rest of the others. `COVERED` says that no share is negative.
@@ -130,12 +136,20 @@ pub struct Linear<N> {
     pub third: N,
 }
 
+impl<N> Linear<N> {
+    /// Returns the number with the values `f` at the vertices, in any form of binary32.
+    #[inline(always)]
+    pub fn from_values<F: Copy>(f: [F; 3], difference: impl Fn(F, F) -> F, number: impl Fn(F) -> N) -> Linear<N> {
+        let (first, third) = (difference(f[0], f[1]), difference(f[2], f[1]));
+        Linear { second: number(f[1]), first: number(first), third: number(third) }
+    }
+}
+
 impl<N: Number> Linear<N> {
     /// Returns the number with the finite values `f` at the vertices.
     #[inline(always)]
     pub fn new(f: [f32; 3]) -> Linear<N> {
-        let [first, third] = differences(f);
-        Linear { second: N::from_f32(f[1]), first: N::from_f32(first), third: N::from_f32(third) }
+        Linear::from_values(f, difference, N::from_f32)
     }
 
     /// WGT-1: returns the terms b_0 (f_0 - f_1), f_1 and b_2 (f_2 - f_1).
@@ -165,79 +179,104 @@ pub fn differences(f: [f32; 3]) -> [f32; 2] {
     [difference(f[0], f[1]), difference(f[2], f[1])]
 }
 
-impl Number for Binary {
-    type Exponent = i32;
+/// Returns a number that is not negative, rounded up to 24 bits.
+#[inline(always)]
+fn rounded_up<I: Integer>(n: Binary<I>) -> Binary<I> {
+    let dropped = (n.mantissa.bits() - I::new(24)).greatest(I::new(0));
+    let kept = (n.mantissa + I::new(1).up(dropped) - I::new(1)).down(dropped).within(0, 1 << 24);
+    Binary { mantissa: kept, exponent: n.exponent + dropped }
+}
 
-    #[inline]
-    fn from_edge(edge: i64) -> Binary {
-        Binary { mantissa: edge, exponent: 0 }
+impl<I: Integer> Number for Binary<I> {
+    type Exponent = I;
+    type Choice = I::Choice;
+
+    #[inline(always)]
+    fn from_edge(edge: i64) -> Binary<I> {
+        Binary::whole(I::new(edge))
     }
 
-    #[inline]
-    fn from_f32(number: f32) -> Binary {
-        Binary::new(number)
+    #[inline(always)]
+    fn from_f32(number: f32) -> Binary<I> {
+        let Binary { mantissa, exponent } = Binary::new(number);
+        Binary { mantissa: I::new(mantissa), exponent: I::new(exponent) }
     }
 
-    #[inline]
-    fn cut(self) -> Binary {
+    #[inline(always)]
+    fn cut(self) -> Binary<I> {
         self.first_bits(24)
     }
 
-    #[inline]
-    fn times(self, other: Binary) -> Binary {
+    #[inline(always)]
+    fn times(self, other: Binary<I>) -> Binary<I> {
         Binary { mantissa: self.mantissa * other.mantissa, exponent: self.exponent + other.exponent }
     }
 
-    #[inline]
-    fn aligned_sum<const BITS: i32>(terms: [Binary; 3]) -> Binary {
-        let Some(top) = terms.iter().filter(|term| term.mantissa != 0).map(|term| term.top()).max() else {
-            return Binary::default();
-        };
-        let unit = top - BITS;
-        Binary { mantissa: terms.into_iter().map(|term| term.steps(unit)).sum(), exponent: unit }
+    #[inline(always)]
+    fn aligned_sum<const BITS: i32>(terms: [Binary<I>; 3]) -> Binary<I> {
+        let [a, b, c] = terms;
+        let top = a.top().greatest(b.top()).greatest(c.top());
+        let unit = (top - I::new(BITS.into())).or(I::new(LEAST_TOP).is_below(top), I::new(0));
+        let most = (1 << BITS) - 1;
+        let steps = |term: Binary<I>| term.steps(unit).within(-most, most);
+        Binary { mantissa: steps(a) + steps(b) + steps(c), exponent: unit }
     }
 
-    #[inline]
-    fn sum_of_edges(edges: [Binary; 3]) -> Binary {
+    #[inline(always)]
+    fn sum_of_edges(edges: [Binary<I>; 3]) -> Binary<I> {
         let sum = Binary::aligned_sum::<29>(edges);
-        if sum.mantissa == 0 { Binary { mantissa: 1, ..sum } } else { sum }
+        Binary { mantissa: I::new(1).or(sum.mantissa.is_zero(), sum.mantissa), ..sum }
     }
 
-    #[inline]
-    fn reciprocal(self) -> Binary {
-        let sum = self.mantissa.unsigned_abs();
-        let length = 63 - sum.leading_zeros() as i32;
-        let (mantissa, scale) = if sum.is_power_of_two() {
-            (1 << 28, 28 + length)
-        } else {
-            // floor(2^s / sum - 3/16)
-            ((((1 << (29 + length + 4)) - 3 * sum) / (16 * sum)) as i64, 29 + length)
+    #[inline(always)]
+    fn reciprocal(self) -> Binary<I> {
+        let sum = self.mantissa.magnitude();
+        let length = sum.bits() - I::new(1);
+        let is_power = sum.compared(CompareFunction::Equal, I::new(1).up(length));
+        // floor(2^s / sum - 3/16) is floor((2^(s + 4) - 3 sum) / (16 sum)), with s + 4 = length + 33, which may be 63.
+        let half = I::new(1).up(length + I::new(32));
+        let quotient = ((half - I::new(3) * sum) + half).quotient(I::new(16) * sum);
+        let mantissa = I::new(1 << 28).or(is_power, quotient.within(0, (1 << 29) - 1));
+        let scale = length + I::new(28).or(is_power, I::new(29));
+        Binary { mantissa: mantissa.negated(self.mantissa.is_negative()), exponent: I::new(0) - self.exponent - scale }
+    }
+
+    #[inline(always)]
+    fn rest(a: Binary<I>, b: Binary<I>) -> Binary<I> {
+        // Bits are lost only where the rest is no number of 24 bits, which its last bit says.
+        let Binary { mantissa: rest, exponent } = Binary::whole(I::new(1)).plus(a.negated().plus(b.negated(), 60), 60);
+        let Binary { mantissa, exponent } = rounded_up(Binary { mantissa: rest.magnitude(), exponent });
+        Binary { mantissa: mantissa.negated(rest.is_negative()), exponent }
+    }
+
+    /// What weights lose below the 60th fraction bit does not matter: the rest is at least 1/8, and where both lose some it is 1 to 24 bits.
+    #[inline(always)]
+    fn rest_of_weights(a: Binary<I>, b: Binary<I>) -> Binary<I> {
+        let zero = I::new(0);
+        let fixed = |n: Binary<I>| {
+            let up = (n.exponent + I::new(60)).limited(-63, 63);
+            n.mantissa
+                .down((zero - up).greatest(zero))
+                .or(up.is_negative(), n.mantissa.up(up.greatest(zero)))
+                .within(0, 1 << 61)
         };
-        Binary { mantissa: self.mantissa.signum() * mantissa, exponent: -self.exponent - scale }
+        let rest = I::new(1 << 60) - fixed(a) - fixed(b);
+        rounded_up(Binary { mantissa: rest.greatest(I::new(1)).within(1, 1 << 60), exponent: I::new(-60) })
     }
 
-    fn rest(a: Binary, b: Binary) -> Binary {
-        // Weights are at least 2^-78 and, outside of the triangle, less than 2^32, so that nothing falls below this unit.
-        const UNIT: i32 = -92;
-        let fixed = |n: Binary| match n.exponent - UNIT {
-            up if up >= 0 => i128::from(n.mantissa) << up.min(126),
-            down => i128::from(n.mantissa) >> (-down).min(127),
-        };
-        let rest = (1 << -UNIT) - fixed(a) - fixed(b);
-        let magnitude = rest.unsigned_abs();
-        let dropped = (128 - magnitude.leading_zeros() as i32 - 24).max(0);
-        let kept = (magnitude + ((1 << dropped) - 1)) >> dropped;
-        Binary { mantissa: kept as i64 * rest.signum() as i64, exponent: UNIT + dropped }
+    #[inline(always)]
+    fn exponent(self) -> I {
+        (self.mantissa.bits() + self.exponent).or(I::new(0).is_below(self.mantissa), I::new(LEAST_TOP))
     }
 
-    #[inline]
-    fn exponent(self) -> i32 {
-        if self.mantissa > 0 { self.top() } else { i32::MIN }
+    #[inline(always)]
+    fn is_above(a: I, b: I) -> I::Choice {
+        b.is_below(a)
     }
 
-    #[inline]
-    fn or(self, condition: bool, other: Binary) -> Binary {
-        if condition { self } else { other }
+    #[inline(always)]
+    fn or(self, condition: I::Choice, other: Binary<I>) -> Binary<I> {
+        Binary::or(self, condition, other)
     }
 }
 
@@ -250,6 +289,7 @@ const BIAS: u64 = 1023;
 #[allow(clippy::float_arithmetic, reason = "no operation rounds, but where the text corrects it")]
 impl Number for f64 {
     type Exponent = f64;
+    type Choice = bool;
 
     #[inline(always)]
     fn from_edge(edge: i64) -> f64 {
@@ -324,6 +364,11 @@ impl Number for f64 {
     }
 
     #[inline(always)]
+    fn is_above(a: f64, b: f64) -> bool {
+        a > b
+    }
+
+    #[inline(always)]
     fn or(self, condition: bool, other: f64) -> f64 {
         if condition { self } else { other }
     }
@@ -370,6 +415,7 @@ pub struct Real(pub f64);
 #[allow(clippy::float_arithmetic, reason = "the real-number reference; it never feeds a stored byte")]
 impl Number for Real {
     type Exponent = f64;
+    type Choice = bool;
 
     fn from_edge(edge: i64) -> Real {
         Real(edge as f64)
@@ -407,6 +453,10 @@ impl Number for Real {
         self.0.exponent()
     }
 
+    fn is_above(a: f64, b: f64) -> bool {
+        a > b
+    }
+
     fn or(self, condition: bool, other: Real) -> Real {
         if condition { self } else { other }
     }
@@ -419,7 +469,7 @@ mod tests {
     use crate::random::Random;
 
     fn double(n: Binary) -> f64 {
-        n.mantissa as f64 * 2_f64.powi(n.exponent)
+        n.mantissa as f64 * 2_f64.powi(n.exponent as i32)
     }
 
     /// Returns numbers of up to `bits` bits at which roundings change: powers of two, their neighbours, ties, runs of ones, and random ones.
@@ -496,7 +546,7 @@ mod tests {
             let mut weight = || {
                 let (mantissa, down) = (boundary(&mut random, 24), random.bits() % 60);
                 let down = down as i32 + 1;
-                Binary { mantissa, exponent: -down - bits_of(mantissa) }
+                Binary { mantissa, exponent: (-down - bits_of(mantissa)).into() }
             };
             let (a, mut b) = (weight(), weight());
             if step % 2 == 0 {
@@ -511,6 +561,7 @@ mod tests {
             let rest = |a: Binary, b: Binary| double(Binary::rest(a, b));
             assert_eq!(f64::rest_of_weights(double(a), double(b)), rest(a, b), "{a:?} {b:?}");
             assert_eq!(f64::rest_of_weights(double(b), double(a)), rest(a, b), "{a:?} {b:?}");
+            assert_eq!(double(Binary::rest_of_weights(a, b)), rest(a, b), "{a:?} {b:?}");
         }
     }
 
@@ -565,7 +616,7 @@ mod tests {
 
     #[test]
     fn equal_weights_go_round() {
-        let of = |n: [i64; 3]| dominance(n.map(Binary::from_edge));
+        let of = |n: [i64; 3]| dominance::<Binary>(n.map(Binary::from_edge));
         assert_eq!(
             [of([5, 5, 2]), of([2, 5, 5]), of([5, 2, 5]), of([4, 4, 4])],
             [[true, false], [false, false], [false, true], [false, true]]

@@ -1,11 +1,18 @@
 //! STN-1: the stencil test.
 
+use crate::number::Integer;
 use crate::state::{StencilOperation, StencilTest};
 
 /// Returns whether a stored stencil byte passes the test.
 #[inline(always)]
 pub fn passes(test: &StencilTest, stored: u8) -> bool {
-    test.function.passes(test.reference & test.mask, stored & test.mask)
+    compared(test, i32::from(stored))
+}
+
+/// [`passes`] of any whole number.
+#[inline(always)]
+pub fn compared<I: Integer>(test: &StencilTest, stored: I) -> I::Choice {
+    I::new((test.reference & test.mask).into()).compared(test.function, stored.masked(test.mask.into()))
 }
 
 /// Returns the operation that applies after the stencil test and, if it passed, the depth test.
@@ -21,17 +28,24 @@ pub fn operation(test: &StencilTest, passed: bool, depth_passed: bool) -> Stenci
 /// Returns the stencil byte that an operation stores.
 #[inline(always)]
 pub fn written(test: &StencilTest, operation: StencilOperation, stored: u8) -> u8 {
+    replaced(test, operation, i32::from(stored)) as u8
+}
+
+/// [`written`] of any whole number.
+#[inline(always)]
+pub fn replaced<I: Integer>(test: &StencilTest, operation: StencilOperation, stored: I) -> I {
+    let of = |n: i64| I::new(n);
     let new = match operation {
         StencilOperation::Keep => stored,
-        StencilOperation::Zero => 0,
-        StencilOperation::Replace => test.reference,
-        StencilOperation::IncrementSaturate => stored.saturating_add(1),
-        StencilOperation::DecrementSaturate => stored.saturating_sub(1),
-        StencilOperation::Invert => !stored,
-        StencilOperation::Increment => stored.wrapping_add(1),
-        StencilOperation::Decrement => stored.wrapping_sub(1),
+        StencilOperation::Zero => of(0),
+        StencilOperation::Replace => of(test.reference.into()),
+        StencilOperation::IncrementSaturate => (stored + of(1)).least(of(255)),
+        StencilOperation::DecrementSaturate => (stored - of(1)).greatest(of(0)),
+        StencilOperation::Invert => of(255) - stored,
+        StencilOperation::Increment => (stored + of(1)).masked(255),
+        StencilOperation::Decrement => (stored + of(255)).masked(255),
     };
-    (stored & !test.write_mask) | (new & test.write_mask)
+    stored.masked((!test.write_mask).into()) + new.masked(test.write_mask.into())
 }
 
 /// Returns whether the test can change a stored byte.

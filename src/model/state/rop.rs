@@ -27,6 +27,7 @@ named! {
 
 impl CompareFunction {
     /// Returns whether `incoming` passes against `stored`.
+    #[inline(always)]
     pub fn passes<T: PartialOrd>(self, incoming: T, stored: T) -> bool {
         match self {
             CompareFunction::Never => false,

@@ -1,26 +1,37 @@
 //! TEX-7, TEX-8: address modes, which handle texel indices outside the image.
 
+use crate::number::Integer;
 use crate::state::{AddressMode, BORDER_TEXELS};
 
 /// Maps texel index `i` into 0..n. Returns `None` for the border colour. If the texture has border texels,
 /// [`AddressMode::ClampToBorder`] addresses them and returns -4..n+4; the other modes never do.
 #[inline(always)]
 pub fn address(mode: AddressMode, i: i64, n: u32, border_texels: bool) -> Option<i64> {
-    let size = i64::from(n);
+    let is_outside = shows_border_color(mode, border_texels) && !(0..i64::from(n)).contains(&i);
+    (!is_outside).then(|| texel_index(mode, i, n.into(), border_texels))
+}
+
+/// TEX-7: returns whether texel indices outside the image address the border colour.
+#[inline(always)]
+pub fn shows_border_color(mode: AddressMode, border_texels: bool) -> bool {
+    mode == AddressMode::ClampToBorder && !border_texels
+}
+
+/// TEX-7, TEX-8: returns the index of the texel that index `i` addresses; for the border colour, that of the nearest one.
+#[inline(always)]
+pub fn texel_index<I: Integer>(mode: AddressMode, i: I, size: I, border_texels: bool) -> I {
+    let last = size - I::new(1);
     match mode {
-        AddressMode::Wrap if n.is_power_of_two() => Some(i & (size - 1)),
-        AddressMode::Wrap => Some(i.rem_euclid(size)),
+        AddressMode::Wrap => i.modulo(size),
         AddressMode::Mirror => {
-            let last = 2 * size - 1;
-            let folded = if n.is_power_of_two() { i & last } else { i.rem_euclid(2 * size) };
-            Some(folded.min(last - folded))
+            let folded = i.modulo(size + size);
+            folded.least(size + last - folded)
         }
-        AddressMode::ClampToEdge | AddressMode::Clamp => Some(i.clamp(0, size - 1)),
         AddressMode::ClampToBorder if border_texels => {
-            let beyond = i64::from(BORDER_TEXELS);
-            Some(i.clamp(-beyond, size - 1 + beyond))
+            let beyond = I::new(BORDER_TEXELS.into());
+            i.least(last + beyond).greatest(I::new(0) - beyond)
         }
-        AddressMode::ClampToBorder => (0..size).contains(&i).then_some(i),
+        AddressMode::ClampToEdge | AddressMode::Clamp | AddressMode::ClampToBorder => i.least(last).greatest(I::new(0)),
     }
 }
 

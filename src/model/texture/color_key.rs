@@ -7,12 +7,12 @@ use crate::state::{ColorKey, ColorKeyMode};
 use crate::trace::Observer;
 
 /// Returns the number of channels that are compared: four, or three (R, G, B) if the format has no alpha.
-fn compared(unit: &PlannedUnit) -> usize {
+pub fn compared(unit: &PlannedUnit) -> usize {
     if unit.format.has_alpha() { 4 } else { 3 }
 }
 
 /// Returns the key in the form in which lanes hold a texel: bytes, or two's complement values for signed channels.
-pub(super) fn as_lanes(unit: &PlannedUnit, key: &ColorKey) -> [i32; 4] {
+pub fn as_lanes(unit: &PlannedUnit, key: &ColorKey) -> [i32; 4] {
     std::array::from_fn(|n| {
         let byte = key.color[n];
         if unit.state.signed[n] { i32::from(byte as i8) } else { i32::from(byte) }
@@ -26,7 +26,7 @@ pub(crate) fn as_word(unit: &PlannedUnit, key: &ColorKey) -> (u32, u32) {
 }
 
 /// Returns the channels that a match sets to 0.
-pub(super) fn cleared(mode: ColorKeyMode) -> [bool; 4] {
+pub fn cleared(mode: ColorKeyMode) -> [bool; 4] {
     match mode {
         ColorKeyMode::Alpha => [false, false, false, true],
         ColorKeyMode::Color => [true; 4],

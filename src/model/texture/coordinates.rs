@@ -4,6 +4,7 @@ use super::cube::{Face, Signed};
 use super::lod::Quad;
 use super::planned::PlannedUnit;
 use super::report::Report;
+use crate::number::Integer;
 use crate::raster::binary::Binary;
 use crate::raster::interpolate::{COORDINATE_LIMIT, FARTHEST, Sample, coordinate, face_coordinate, ratio};
 use crate::raster::stroke::sprite_coordinate;
@@ -74,7 +75,7 @@ pub fn wrapped(unit: &PlannedUnit, mut vertices: [[f32; 4]; 3]) -> [[f32; 4]; 3]
 
 /// Returns the face that a direction meets.
 pub(crate) fn face_of([x, y, z]: [Binary; 3]) -> Face {
-    let not_below = |a: Binary, b: Binary| a.compare_magnitude(b).is_ge();
+    let not_below = |a: Binary, b: Binary| a.is_no_smaller(b);
     let (x_first, y_first) = (not_below(x, y) && not_below(x, z), not_below(y, z));
     // As `Face::from_direction` orders magnitudes.
     let magnitudes = [if x_first { 2 } else { 0 }, i64::from(y_first), i64::from(!y_first)];
@@ -190,7 +191,8 @@ impl Interpolated<'_> {
     /// Returns the coordinates of one pixel of the quad on a face, in 1/65536 texel of level 0, or `None` if it lies
     /// behind the viewer.
     fn at_quad(&self, at: &Sample<'_>, pixel: (i64, i64), face: Face) -> Option<[i64; 2]> {
-        let [width, height] = self.unit.scale(&self.unit.levels[0]);
+        let sides = self.unit.scale(&self.unit.levels[0]);
+        let [width, height] = sides.map(i64::from);
         if at.is_behind() {
             return None;
         }
@@ -200,17 +202,15 @@ impl Interpolated<'_> {
             }
             Coordinates::Ratio(of) => {
                 let [s, t, q] = of.map(|f| at.value(&f));
-                let along = |s: Binary, size: u32| s.floored_ratio(q, size, 16, FARTHEST);
-                (q.mantissa > 0).then(|| [along(s, width), along(t, height)])
+                (q.mantissa > 0).then(|| [quad_ratio(s, q, width), quad_ratio(t, q, height)])
             }
             Coordinates::Direction(direction) => {
                 let [s, t, m] = on_face(direction.map(|f| at.value(&f)), face);
-                let along = |s: Binary, size: u32| face_coordinate(s, m, size, 16);
-                (m.mantissa > 0).then(|| [along(s, width), along(t, height)])
+                (m.mantissa > 0).then(|| [face_coordinate(s, m, width, 16), face_coordinate(t, m, height, 16)])
             }
             Coordinates::Sprite { at, size } => {
                 let [x, y] = Self::from_point(*at, pixel);
-                Some([sprite_coordinate(x, *size, width, 16), sprite_coordinate(y, *size, height, 16)])
+                Some([sprite_coordinate(x, *size, sides[0], 16), sprite_coordinate(y, *size, sides[1], 16)])
             }
         }
     }
@@ -268,7 +268,8 @@ impl SampleCoordinates for Interpolated<'_> {
     }
 
     fn on(&self, level: &Level) -> [i64; 2] {
-        let [width, height] = self.unit.scale(level);
+        let sides = self.unit.scale(level);
+        let [width, height] = sides.map(i64::from);
         match self.coordinates {
             Coordinates::Plane([s, t]) => [coordinate(self.at.value(s), width), coordinate(self.at.value(t), height)],
             Coordinates::Ratio(of) => {
@@ -282,7 +283,7 @@ impl SampleCoordinates for Interpolated<'_> {
             }
             Coordinates::Sprite { at, size } => {
                 let [x, y] = Self::from_point(*at, self.pixel);
-                [sprite_coordinate(x, *size, width, 8), sprite_coordinate(y, *size, height, 8)]
+                [sprite_coordinate(x, *size, sides[0], 8), sprite_coordinate(y, *size, sides[1], 8)]
             }
         }
     }
@@ -354,8 +355,8 @@ impl SampleCoordinates for Interpolated<'_> {
 
     fn layer(&self, layers: u32) -> i64 {
         match self.third() {
-            (r, Some(q)) => ratio(r, q, layers),
-            (r, None) => coordinate(r, layers),
+            (r, Some(q)) => ratio(r, q, layers.into()),
+            (r, None) => coordinate(r, layers.into()),
         }
     }
 
@@ -479,9 +480,16 @@ fn real_sprite(d: i64, size: u16) -> f64 {
     if size == 0 { 0.5 } else { 0.5 + d as f64 / (2.0 * f64::from(size)) }
 }
 
-/// Returns a coordinate of an image of `size` texels in 1/65536 texel.
-pub(crate) fn quad_coordinate(value: Binary, size: u32) -> i64 {
-    value.floored(size, 16, FARTHEST)
+/// TEX-11: returns a coordinate of an image of `size` texels in 1/65536 texel.
+#[inline]
+pub fn quad_coordinate<I: Integer>(value: Binary<I>, size: I) -> I {
+    value.far_floored(size, I::new(16), I::new(FARTHEST))
+}
+
+/// TEX-11, TEX-15: returns s/q of an image of `size` texels in 1/65536 texel, for a q that is not 0.
+#[inline]
+pub fn quad_ratio<I: Integer>(s: Binary<I>, q: Binary<I>, size: I) -> I {
+    s.floored_ratio::<true>(q, size, I::new(16), I::new(FARTHEST))
 }
 
 /// Returns the ideal's coordinate on a level in 1/256 texel, limited as in TEX-15.

@@ -1,5 +1,6 @@
 //! TEX-12, TEX-13: the face of a cube map that a direction meets, and the coordinates on it.
 
+use crate::number::Choice;
 use crate::state::named;
 
 named! {
@@ -29,18 +30,21 @@ pub struct Signed {
     pub negative: bool,
 }
 
+/// Returns whether the major axis of a direction is x and whether it is y, from whether x is not smaller than y, x than z, and y than z. Ties prefer X
+/// to Y and Y to Z.
+#[inline(always)]
+pub fn major_axis<C: Choice>([x_y, x_z, y_z]: [C; 3]) -> [C; 2] {
+    let is_x = x_y & x_z;
+    [is_x, !is_x & y_z]
+}
+
 impl Face {
     /// Returns the face that a direction meets, which is that of its largest component. Ties prefer X to Y and Y to Z.
     /// The zero vector, and a vector that cannot be compared, meets +X. `zero` is the number 0.
     pub fn from_direction<T: PartialOrd + Copy>(direction: [T; 3], magnitudes: [T; 3], zero: T) -> Face {
         let [x, y, z] = magnitudes;
-        let axis = if x >= y && x >= z {
-            0
-        } else if y >= z {
-            1
-        } else {
-            2
-        };
+        let [is_x, is_y] = major_axis([x >= y, x >= z, y >= z]);
+        let axis = if is_x { 0 } else { 2 - usize::from(is_y) };
         let negative = direction[axis] < zero;
         match (axis, negative) {
             (0, false) => Face::PositiveX,

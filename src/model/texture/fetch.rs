@@ -5,7 +5,7 @@
 use super::address::address;
 use super::planned::{Image, PlannedUnit};
 use super::{compressed, format};
-use crate::number::Lane;
+use crate::number::{Integer, Lane};
 use crate::state::{AddressMode, BORDER_TEXELS, Level, Named, TextureFormat, TextureKind};
 use crate::trace::{Observer, Rule, Work};
 
@@ -40,6 +40,13 @@ impl PlannedUnit {
     pub(crate) fn plane_shifts(&self, level: &Level) -> [u32; 2] {
         let (sides, whole) = (self.scale(level), self.scale(&self.levels[0]));
         [sides[0].leading_zeros() - whole[0].leading_zeros(), sides[1].leading_zeros() - whole[1].leading_zeros()]
+    }
+
+    /// Returns the index of a texel in an image of a level of this width, which is not compressed.
+    #[inline(always)]
+    pub fn texel_offset<I: Integer>(&self, width: I, x: I, y: I) -> I {
+        let beyond = I::new(if self.border { BORDER_TEXELS.into() } else { 0 });
+        (y + beyond) * (width + beyond + beyond) + x + beyond
     }
 
     /// Returns the [shifts](Self::plane_shifts) of the smallest level, which are the largest.
@@ -129,9 +136,7 @@ impl Slice<'_> {
     /// Returns the index of a texel in an image that is not compressed.
     #[inline(always)]
     fn offset(&self, x: i64, y: i64) -> usize {
-        let beyond = if self.unit.border { i64::from(BORDER_TEXELS) } else { 0 };
-        let pitch = i64::from(self.level.width) + 2 * beyond;
-        ((y + beyond) * pitch + x + beyond) as usize
+        self.unit.texel_offset(self.level.width.into(), x, y) as usize
     }
 
     /// Returns the words of the first `count` texels of a row of an image that is not compressed; none if there is no image.

@@ -1,6 +1,6 @@
 //! TEX-5, TEX-6: texel indices and weights of coordinates in 1/256 texel, and bilinear filtering.
 
-use crate::number::Blend;
+use crate::number::{Blend, Integer};
 
 /// TEX-6: returns one step of linear interpolation with the weight `w` of `b`.
 #[inline(always)]
@@ -18,15 +18,22 @@ pub fn bilinear<L: Blend>(t: [L; 4], u: L::Weight, v: L::Weight, mut observe: im
 
 /// TEX-5: returns the index of the texel at a coordinate in 1/256 texel.
 #[inline]
-pub fn nearest(u: i64) -> i64 {
-    u >> 8
+pub fn nearest<I: Integer>(u: I) -> I {
+    u.down(I::new(8))
 }
 
 /// TEX-6: returns the index of the lower of two texels, and the weight of the upper one, 0..=255.
 #[inline]
 pub fn linear(u: i64) -> (i64, i32) {
-    let f = u - 128;
-    (f >> 8, (f & 255) as i32)
+    let (texel, weight) = split(u);
+    (texel, weight as i32)
+}
+
+/// [`linear`] of any whole number.
+#[inline(always)]
+pub fn split<I: Integer>(u: I) -> (I, I) {
+    let f = u - I::new(128);
+    (f.down(I::new(8)), f.modulo(I::new(256)))
 }
 
 #[cfg(test)]

@@ -1,10 +1,11 @@
 //! TEX-9 to TEX-11: the level of detail (lod), and the levels that are read for it.
 
 use super::planned::PlannedUnit;
-use crate::state::{Filter, MipFilter};
+use crate::number::Integer;
+use crate::state::{CompareFunction, Filter, MipFilter};
 
 /// The lod if it is unknown, or if the texture has no extent on the screen. It always magnifies.
-pub(crate) const LEAST: i32 = -32768;
+pub const LEAST: i32 = -32768;
 
 /// u and v at the top-left pixel of a quad and at its right and lower neighbours, in 1/65536 texel of level 0.
 pub(crate) type Quad = [[i64; 2]; 3];
@@ -15,33 +16,76 @@ const FARTHEST: i64 = 1 << 60;
 /// TEX-11, TEX-10: returns floor(256 log2) of the larger distance in texels from the coordinates of the top-left pixel
 /// to those of its right and lower neighbours. `quad` is `None` if one of its pixels lies behind the viewer.
 pub fn log2_ratio(quad: Option<Quad>) -> i32 {
-    let Some(quad) = quad else { return LEAST };
-    let [origin, right, lower] = quad.map(|p| p.map(|c| i128::from(c.clamp(-FARTHEST, FARTHEST))));
-    let squared = |p: [i128; 2]| {
-        let (u, v) = (p[0] - origin[0], p[1] - origin[1]);
-        (u * u + v * v).unsigned_abs()
-    };
-    let largest = squared(right).max(squared(lower));
-    if largest == 0 {
-        return LEAST;
-    }
-    // Squares are in 2^-32 texel^2, and the log2 of a length is half of that of its square.
-    log2_128(largest) - 128 * 32
+    quad.map_or(LEAST, |quad| log2_of_steps(quad) as i32)
 }
 
-/// Returns floor(128 log2 n) for n > 0: the exponent, then seven bits by squaring the mantissa.
-fn log2_128(n: u128) -> i32 {
-    let exponent = 127 - n.leading_zeros() as i32;
-    // 1.0 to 2.0 with 63 fraction bits. A power of two is exactly 1.0.
-    let mut mantissa = if exponent > 63 { n >> (exponent - 63) } else { n << (63 - exponent) };
-    let mut log = exponent;
-    for _ in 0..7 {
-        let square = mantissa * mantissa;
-        let bit = (square >> 127) as i32;
-        mantissa = square >> if bit == 1 { 64 } else { 63 };
-        log = 2 * log + bit;
+/// [`log2_ratio`] of any whole numbers.
+pub fn log2_of_steps<I: Integer>(quad: [[I; 2]; 3]) -> I {
+    let [origin, right, lower] = quad.map(|p| p.map(|c| c.limited(-FARTHEST, FARTHEST)));
+    let squared = |p: [I; 2]| Wide::sum_of_squares([p[0] - origin[0], p[1] - origin[1]].map(I::magnitude));
+    let largest = squared(right).greatest(squared(lower));
+    // Squares are in 2^-32 texel^2, and the log2 of a length is half of that of its square.
+    let log = largest.log2_128() - I::new(128 * 32);
+    log.or(I::new(0).is_below(largest.high + largest.low), I::new(LEAST.into()))
+}
+
+/// Number of bits of the lower half of a [`Wide`] number.
+const HALF: i64 = 61;
+
+/// Number of fraction bits of a mantissa whose logarithm is taken.
+const FRACTION: i64 = 60;
+
+/// The number `high` 2^61 + `low`, where `low` is below 2^61.
+#[derive(Clone, Copy)]
+struct Wide<I> {
+    high: I,
+    low: I,
+}
+
+impl<I: Integer> Wide<I> {
+    /// Returns the sum of the squares of two numbers below 2^62.
+    fn sum_of_squares(of: [I; 2]) -> Wide<I> {
+        const LOW: i64 = (1 << HALF) - 1;
+        let [(u1, u0), (v1, v0)] = of.map(|n| (n.down(I::new(31)), n.masked((1 << 31) - 1)));
+        // high 2^62 + middle 2^32 + the squares of the lower parts.
+        let high = u1 * u1 + v1 * v1;
+        let middle = u1 * u0 + v1 * v0;
+        let (u, v) = (u0 * u0, v0 * v0);
+        let low = middle.masked((1 << 29) - 1).up(I::new(32)) + u.masked(LOW) + v.masked(LOW);
+        let carried = middle.down(I::new(29)) + u.down(I::new(HALF)) + v.down(I::new(HALF)) + low.down(I::new(HALF));
+        Wide { high: high + high + carried, low: low.masked(LOW) }
     }
-    log
+
+    fn greatest(self, other: Wide<I>) -> Wide<I> {
+        let same = self.high.compared(CompareFunction::Equal, other.high);
+        let is_below = self.high.is_below(other.high) | (same & self.low.is_below(other.low));
+        Wide { high: other.high.or(is_below, self.high), low: other.low.or(is_below, self.low) }
+    }
+
+    /// Returns floor(128 log2 n) for n > 0: the exponent, then seven bits by squaring the mantissa.
+    fn log2_128(self) -> I {
+        let one = I::new(1);
+        let is_low = self.high.is_zero();
+        let upper = self.low.or(is_low, self.high);
+        let length = (upper.bits() - one).greatest(I::new(0));
+        let exponent = length + I::new(0).or(is_low, I::new(HALF));
+        // 1.0 to 2.0 with its fraction bits. A power of two is exactly 1.0.
+        let up = I::new(FRACTION) - length;
+        let below = self.low.down((I::new(HALF) - up).limited(0, 63)).or(!is_low, I::new(0));
+        let shifted =
+            upper.down((I::new(0) - up).limited(0, 63)).or(up.is_negative(), upper.up(up.greatest(I::new(0))));
+        let mut mantissa = (shifted + below).within(0, (2 << FRACTION) - 1);
+        let mut log = exponent;
+        for _ in 0..7 {
+            let (high, low) = (mantissa.down(I::new(30)), mantissa.masked((1 << 30) - 1));
+            let cross = high * low;
+            let square = high * high + (cross + cross + (low * low).down(I::new(30))).down(I::new(30));
+            let bit = square.down(I::new(FRACTION + 1));
+            mantissa = square.down(bit);
+            log = log + log + bit;
+        }
+        log
+    }
 }
 
 /// Returns the ideal's log2 ratio in 256ths, from s and t at the quad and the texture's sides in texels.
@@ -106,7 +150,7 @@ pub(crate) fn levels(unit: &PlannedUnit, lod: i32) -> (i32, i32, i32) {
 /// The state of a unit that selects levels, in numbers, because a loop over lanes with comparisons or branches by
 /// filters would not be vectorised.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Selection {
+pub struct Selection {
     bias: i32,
     min_lod: i32,
     max_lod: i32,
@@ -121,7 +165,8 @@ pub(crate) struct Selection {
 }
 
 impl Selection {
-    pub(crate) fn from_unit(unit: &PlannedUnit) -> Selection {
+    /// Returns the numbers of a unit.
+    pub fn from_unit(unit: &PlannedUnit) -> Selection {
         let (state, last) = (&unit.state, unit.levels.len() as i32 - 1);
         let (last, rounding, step, fraction) = match state.mip_filter {
             MipFilter::None => (0, 0, 0, 0),
@@ -134,15 +179,17 @@ impl Selection {
 
     /// Like [`biased`], for a unit whose state is set up.
     #[inline(always)]
-    pub(crate) fn biased(self, log2_ratio: i32) -> i32 {
-        (log2_ratio + self.bias).max(self.min_lod).min(self.max_lod)
+    pub fn biased<I: Integer>(self, log2_ratio: I) -> I {
+        let of = |n: i32| I::new(n.into());
+        (log2_ratio + of(self.bias)).greatest(of(self.min_lod)).least(of(self.max_lod))
     }
 
     /// Like [`levels`], for a unit whose state is set up.
     #[inline(always)]
-    pub(crate) fn levels(self, lod: i32) -> (i32, i32, i32) {
-        let level = (lod + self.rounding) >> 8;
-        (level.min(self.last), (level + self.step).min(self.last), lod & self.fraction)
+    pub fn levels<I: Integer>(self, lod: I) -> (I, I, I) {
+        let of = |n: i32| I::new(n.into());
+        let level = (lod + of(self.rounding)).down(I::new(8));
+        (level.least(of(self.last)), (level + of(self.step)).least(of(self.last)), lod.masked(self.fraction.into()))
     }
 }
 
@@ -162,12 +209,28 @@ mod tests {
 
     #[test]
     fn others_are_floors() {
-        for n in 1..20_000_u128 {
-            let log = log2_128(n);
+        for n in 1..20_000_i64 {
+            let log = Wide { high: 0, low: n }.log2_128();
             let exact = 128.0 * (n as f64).log2();
-            assert!((exact - f64::from(log)) > -1e-9 && exact - f64::from(log) < 1.0, "{n}: {log} {exact}");
+            assert!((exact - log as f64) > -1e-9 && exact - (log as f64) < 1.0, "{n}: {log} {exact}");
+            // A power of two above.
+            for shift in 1..108 {
+                let wide = i128::from(n) << shift;
+                let (high, low) = ((wide >> HALF) as i64, (wide & ((1 << HALF) - 1)) as i64);
+                assert_eq!(Wide { high, low }.log2_128(), log + 128 * shift, "{n} {shift}");
+            }
         }
-        assert_eq!(log2_128(u128::MAX), 128 * 128 - 1);
+    }
+
+    #[test]
+    fn squares_are_exact() {
+        let mut random = crate::random::Random::seeded(3);
+        for n in 0..10_000 {
+            let of: [i64; 2] = [0, 1].map(|_| (random.bits() >> (3 + n % 60)) as i64);
+            let Wide { high, low } = Wide::sum_of_squares(of);
+            let [u, v] = of.map(i128::from);
+            assert_eq!((i128::from(high) << HALF) + i128::from(low), u * u + v * v);
+        }
     }
 
     #[test]

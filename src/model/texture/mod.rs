@@ -13,6 +13,7 @@ pub mod fetch;
 pub mod filter;
 pub mod format;
 pub mod lod;
+mod memory;
 pub mod planned;
 pub mod real;
 pub mod report;

@@ -31,7 +31,7 @@ pub fn offset(entries: [f32; 2], blue_green: [u8; 2]) -> f32 {
 /// The sum is exact before the floor. NaN counts as 0.
 pub fn moved(value: Binary, offset: f32, side: u32, power: i32, limit: i64) -> i64 {
     let offset = if offset.is_nan() { 0.0 } else { offset.clamp(f32::MIN, f32::MAX) };
-    value.floored_sum(Binary::new(offset).scaled(-7), side, power, limit)
+    value.floored_sum(Binary::new(offset).scaled(-7), side.into(), power.into(), limit)
 }
 
 /// TSH-8: returns floor(4096 f) of f = c/255 (R/255 scale + offset), limited to 0..=2^20. A negative c counts as 0.

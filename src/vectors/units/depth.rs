@@ -89,7 +89,7 @@ impl Unit for DepthWord {
     }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
-        results[0] = word(named(inputs[0]), Binary { mantissa: inputs[1], exponent: inputs[2] as i32 }).into();
+        results[0] = word(named(inputs[0]), Binary { mantissa: inputs[1], exponent: inputs[2] }).into();
     }
 }
 
@@ -199,7 +199,7 @@ impl Unit for PixelDepth {
         let plane = DepthPlane::new(&DepthTest { offset, ..test() }, format, &triangle, (z, None));
         let slope = slope(&triangle, z);
         let depth = plane.unwrap_or_default().at(triangle.edges(inputs[6], inputs[7]));
-        results.copy_from_slice(&[slope.mantissa, slope.exponent.into(), word(format, depth).into()]);
+        results.copy_from_slice(&[slope.mantissa, slope.exponent, word(format, depth).into()]);
     }
 }
 

@@ -175,7 +175,7 @@ impl Unit for VertexWeights {
         let bits = |n: Binary| i64::from(n.nearest_f32().to_bits());
         let edges = sample.e.into_iter().chain(weights.edges.map(bits));
         let Binary { mantissa, exponent } = weights.reciprocal;
-        let reciprocal = [mantissa, exponent.into(), weights.dominant as i64];
+        let reciprocal = [mantissa, exponent, weights.dominant as i64];
         put(results, edges.chain(reciprocal).chain(weights.b.map(bits)).chain(sample.color_weights()));
     }
 }
@@ -236,7 +236,7 @@ impl Unit for LinearNumber {
         put(results, differences(f).map(f32::to_bits));
         // An odd mantissa, which does not depend on how a number is held.
         (results[2], results[3]) =
-            if mantissa == 0 { (0, 0) } else { (mantissa >> zeros, i64::from(exponent) + i64::from(zeros)) };
+            if mantissa == 0 { (0, 0) } else { (mantissa >> zeros, exponent + i64::from(zeros)) };
     }
 }
 
@@ -381,7 +381,7 @@ impl Unit for TextureCoordinate {
         let sample = Sample::new(&triangle, triangle.edges(inputs[6], inputs[7]));
         let s = sample.value(&Linear::new([11, 12, 13].map(|n| f32::from_bits(inputs[n] as u32))));
         let bits = |n: Binary| i64::from(n.nearest_f32().to_bits());
-        let u = interpolate::coordinate(s, inputs[14] as u32);
+        let u = interpolate::coordinate(s, inputs[14]);
         put(results, sample.weights().b.map(bits).into_iter().chain([bits(s.first_bits(24)), u]));
     }
 }

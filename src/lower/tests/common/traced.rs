@@ -68,7 +68,7 @@ impl<'t> Traced<'t> {
             Input::BlendConstant(c) => draw.blend_constant[c].into(),
             Input::AlphaReference => draw.alpha_test.unwrap().reference.into(),
             Input::BorderColor(n, c) => draw.textures[n].unwrap().border_color[c].into(),
-            Input::Local(local) => panic!("a draw does not read {local:?}"),
+            input => panic!("this function does not read {input:?}"),
         }
     }
 }

@@ -77,7 +77,8 @@ mod tests {
             let mut w = || f32::from_bits((107 + (random.bits() % 40) as u32) << 23 | (random.bits() >> 41) as u32);
             let w = [w(), w(), w()];
             let shape = Shape::new(&triangle, w, (true, Profile::Nv2a), round % 2 == 0);
-            let wanted = ratios(w.map(Binary::new)).map(|ratio| ratio.mantissa as f64 * 2_f64.powi(ratio.exponent));
+            let wanted =
+                ratios(w.map(Binary::new)).map(|ratio| ratio.mantissa as f64 * 2_f64.powi(ratio.exponent as i32));
             assert_eq!(shape.ratios, Some(wanted), "{w:?}");
         }
     }

@@ -152,7 +152,7 @@ mod tests {
     use crate::state::Profile;
 
     fn double(n: Binary) -> f64 {
-        n.mantissa as f64 * 2_f64.powi(n.exponent)
+        n.mantissa as f64 * 2_f64.powi(n.exponent as i32)
     }
 
     /// Triangles of all sizes, with one w and with several, inside and hardly outside.

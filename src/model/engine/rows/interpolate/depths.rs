@@ -162,7 +162,7 @@ mod tests {
                 let numbers = edge_numbers(e.map(f64::from_edge), None);
                 let found = Vertices::new(z).depth(numbers, f64::sum_of_edges(numbers).reciprocal());
                 let exact = depth::interpolate(e, z);
-                assert_eq!(found, exact.mantissa as f64 * 2_f64.powi(exact.exponent), "{z:?} {e:?}");
+                assert_eq!(found, exact.mantissa as f64 * 2_f64.powi(exact.exponent as i32), "{z:?} {e:?}");
             }
         }
     }

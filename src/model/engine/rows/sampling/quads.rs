@@ -16,7 +16,8 @@ use super::sampler::Sampler;
 use crate::engine::rows::geometry::weights::Pixels;
 use crate::engine::rows::lanes::{PerLane, floor_of_quotient, larger, whole_steps};
 use crate::raster::binary::Binary;
-use crate::raster::interpolate::{FARTHEST as LIMIT, face_coordinate};
+use crate::raster::interpolate::face_coordinate;
+use crate::texture::coordinates::quad_ratio;
 use crate::texture::cube::Face;
 use crate::texture::lod::Quad;
 use crate::texture::planned::PlannedUnit;
@@ -239,11 +240,11 @@ impl Quads {
                 Projection::None => [0, 1].map(|axis: usize| self.at[pixel][axis][n] as i64),
                 Projection::Divided => {
                     let [s, t, q] = direction(pixel).map(whole);
-                    [s.floored_ratio(q, sides[0], 16, LIMIT), t.floored_ratio(q, sides[1], 16, LIMIT)]
+                    [quad_ratio(s, q, sides[0].into()), quad_ratio(t, q, sides[1].into())]
                 }
                 Projection::Cube => {
                     let [s, t, m] = Facing::new(first).components(direction(pixel)).map(whole);
-                    [s, t].map(|s| face_coordinate(s, m, sides[0], 16))
+                    [s, t].map(|s| face_coordinate(s, m, sides[0].into(), 16))
                 }
                 Projection::CubeOfVector => {
                     let vector = |direction: [f64; 3]| shader::direction(direction.map(|component| component as f32));

@@ -1,0 +1,204 @@
+//! Reads the rules of the interpolator as calls of [helpers](crate::helper).
+
+use ninebit::number::Integer;
+use ninebit::raster::binary::Binary;
+use ninebit::raster::weights;
+
+use crate::body::parts;
+use crate::code::{Code, Kind, Operand, Operation, Range};
+use crate::helper::{Helper, Sign};
+use crate::number::Number;
+use crate::truth::Truth;
+
+/// A number of the interpolator.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Called<'a> {
+    /// A number that the text holds.
+    Known(Binary),
+    /// A whole number, as an edge function is.
+    Whole(&'a Code, Operand, Sign),
+    /// The result of a line.
+    Of(&'a Code, Operand, Sign),
+    /// The product of two such results, which becomes a part of the next helper.
+    Product(&'a Code, [Operand; 2], Sign),
+}
+
+impl<'a> Called<'a> {
+    /// Returns a whole number.
+    pub(crate) fn whole(code: &'a Code, number: Number<'a>) -> Called<'a> {
+        let sign = if number.range().0 < 0 { Sign::Any } else { Sign::Positive };
+        Called::Whole(code, number.operand(), sign)
+    }
+
+    /// Returns the result of a line, which may be negative.
+    pub(crate) fn of(code: &'a Code, operand: Operand) -> Called<'a> {
+        Called::Of(code, operand, Sign::Any)
+    }
+
+    fn sign(self) -> Sign {
+        match self {
+            Called::Known(known) if known.mantissa >= 0 => Sign::Positive,
+            Called::Known(_) => Sign::Any,
+            Called::Whole(.., sign) | Called::Of(.., sign) | Called::Product(.., sign) => sign,
+        }
+    }
+
+    /// Returns the number 1.
+    pub(crate) const ONE: Called<'static> = Called::Known(Binary::ONE);
+
+    /// Returns the number as one value.
+    pub(crate) fn operand(self, code: &Code) -> Operand {
+        match self {
+            Called::Known(Binary { mantissa, exponent }) => {
+                code.make(Operation::Binary(Operand::Constant(mantissa), Operand::Constant(exponent)))
+            }
+            Called::Whole(_, number, _) => code.make(Operation::Binary(number, Operand::Constant(0))),
+            Called::Of(_, operand, _) => operand,
+            Called::Product(code, of, sign) => call(code, Helper::Product(sign), &of),
+        }
+    }
+
+    /// Returns mantissa and exponent, for rules that are no helpers.
+    pub(crate) fn parts(self, code: &'a Code, mantissas: Range) -> Binary<Number<'a>> {
+        match self {
+            Called::Known(Binary { mantissa, exponent }) => {
+                Binary { mantissa: Number::Constant(mantissa), exponent: Number::Constant(exponent) }
+            }
+            of => parts(code, of.operand(code), mantissas),
+        }
+    }
+
+    /// Names the value.
+    pub(crate) fn named(self, name: impl FnOnce() -> String) -> Called<'a> {
+        if let Called::Of(code, operand, _) = self {
+            code.name(operand, name);
+        }
+        self
+    }
+
+    fn code(self) -> Option<&'a Code> {
+        match self {
+            Called::Known(_) => None,
+            Called::Whole(code, ..) | Called::Of(code, ..) | Called::Product(code, ..) => Some(code),
+        }
+    }
+
+    /// Returns what a helper makes of numbers. Of known ones it is known.
+    fn of_helper(
+        helper: impl Fn(Sign) -> Helper,
+        of: &[Called<'a>],
+        known: impl FnOnce(&[Binary]) -> Binary,
+    ) -> Called<'a> {
+        let sign = of.iter().map(|number| number.sign()).max().unwrap_or(Sign::Any);
+        let code = of.iter().find_map(|number| number.code());
+        match code {
+            Some(code) => {
+                let operands: Vec<Operand> = of.iter().map(|number| number.operand(code)).collect();
+                Called::Of(code, call(code, helper(sign), &operands), sign)
+            }
+            None => {
+                let of = of.iter().map(|number| if let Called::Known(known) = number { *known } else { Binary::ONE });
+                Called::Known(known(&of.collect::<Vec<_>>()))
+            }
+        }
+    }
+
+    /// Returns two factors of the number.
+    fn factors(self, code: &'a Code) -> [Operand; 2] {
+        match self {
+            Called::Product(_, of, _) => of,
+            other => [other.operand(code), Called::ONE.operand(code)],
+        }
+    }
+}
+
+/// Calls a helper.
+pub(crate) fn call(code: &Code, helper: Helper, of: &[Operand]) -> Operand {
+    let mut operands = [Operand::Constant(0); 6];
+    operands[..of.len()].copy_from_slice(of);
+    code.by(helper.about().2);
+    code.make(Operation::Call(helper, operands))
+}
+
+/// Calls a helper whose result is a number.
+pub(crate) fn counted<'a>(code: &'a Code, helper: Helper, of: &[Operand]) -> Number<'a> {
+    debug_assert_eq!(helper.kind(), Kind::Number);
+    Number::new(code, call(code, helper, of))
+}
+
+impl<'a> weights::Number for Called<'a> {
+    type Exponent = Number<'a>;
+    type Choice = Truth<'a>;
+
+    fn from_edge(edge: i64) -> Called<'a> {
+        Called::Known(Binary::whole(edge))
+    }
+    fn from_f32(number: f32) -> Called<'a> {
+        Called::Known(Binary::new(number))
+    }
+    fn cut(self) -> Called<'a> {
+        match self {
+            Called::Whole(code, number, sign) => Called::Of(code, call(code, Helper::Cut(sign), &[number]), sign),
+            Called::Known(known) => Called::Known(weights::Number::cut(known)),
+            Called::Of(code, _, sign) | Called::Product(code, _, sign) => {
+                Called::Of(code, call(code, Helper::Product(sign), &self.factors(code)), sign)
+            }
+        }
+    }
+    fn times(self, other: Called<'a>) -> Called<'a> {
+        match (self, other) {
+            (Called::Known(a), Called::Known(b)) => Called::Known(weights::Number::times(a, b)),
+            (Called::Known(Binary::ONE), b) => b,
+            (a, Called::Known(Binary::ONE)) => a,
+            (a, b) => {
+                let Some(code) = a.code().or(b.code()) else { return a };
+                Called::Product(code, [a.operand(code), b.operand(code)], a.sign().max(b.sign()))
+            }
+        }
+    }
+    fn aligned_sum<const BITS: i32>(terms: [Called<'a>; 3]) -> Called<'a> {
+        let Some(code) = terms.iter().find_map(|term| term.code()) else {
+            let known = terms.map(|term| if let Called::Known(known) = term { known } else { Binary::ONE });
+            return Called::Known(weights::Number::aligned_sum::<BITS>(known));
+        };
+        let [[a, b], [c, d], [e, f]] = terms.map(|term| term.factors(code));
+        if BITS == 24 {
+            return Called::of(code, call(code, Helper::Linear, &[a, b, terms[1].operand(code), e, f]));
+        }
+        Called::of(code, call(code, Helper::Depth, &[a, b, c, d, e, f]))
+    }
+    fn sum_of_edges(edges: [Called<'a>; 3]) -> Called<'a> {
+        Called::of_helper(Helper::Sum, &edges, |of| Binary::sum_of_edges([of[0], of[1], of[2]]))
+    }
+    fn reciprocal(self) -> Called<'a> {
+        Called::of_helper(Helper::Reciprocal, &[self], |of| of[0].reciprocal())
+    }
+    fn rest(a: Called<'a>, b: Called<'a>) -> Called<'a> {
+        Called::of_helper(|_| Helper::Rest(Sign::Any), &[a, b], |of| Binary::rest(of[0], of[1]))
+    }
+    fn rest_of_weights(a: Called<'a>, b: Called<'a>) -> Called<'a> {
+        Called::of_helper(|_| Helper::Rest(Sign::Positive), &[a, b], |of| Binary::rest_of_weights(of[0], of[1]))
+    }
+    fn exponent(self) -> Number<'a> {
+        match self.code() {
+            Some(code) => counted(code, Helper::Exponent, &[self.operand(code)]),
+            None => match self {
+                Called::Known(known) => Number::Constant(weights::Number::exponent(known)),
+                _ => Number::Constant(0),
+            },
+        }
+    }
+    fn is_above(a: Number<'a>, b: Number<'a>) -> Truth<'a> {
+        b.is_below(a)
+    }
+    fn or(self, condition: Truth<'a>, other: Called<'a>) -> Called<'a> {
+        match condition {
+            Truth::Known(true) => self,
+            Truth::Known(false) => other,
+            Truth::Of(code, test) => {
+                let of = [self.operand(code), other.operand(code)];
+                Called::Of(code, code.make(Operation::Choose(test, of)), self.sign().max(other.sign()))
+            }
+        }
+    }
+}

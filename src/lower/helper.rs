@@ -1,0 +1,255 @@
+//! Helpers: functions that a printed text calls. Each is a piece of the rules, which the model computes and the printer reads.
+
+use ninebit::number::Integer;
+use ninebit::raster::binary::Binary;
+use ninebit::raster::depth;
+use ninebit::raster::interpolate::{FARTHEST, face_coordinate, ratio};
+use ninebit::raster::weights::{Linear, Number as _};
+use ninebit::texture::coordinates::quad_ratio;
+use ninebit::texture::lod;
+
+use crate::input::Local;
+use crate::kind::{ANY_BINARY, EXPONENT, Kind, MANTISSA, Range, packed, unpacked};
+
+/// Whether numbers can be negative.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Sign {
+    /// None is, as where a pixel is covered.
+    Positive,
+    /// Some may be.
+    Any,
+}
+
+/// A helper.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Helper {
+    /// An edge function to 24 bits.
+    Cut(Sign),
+    /// A product to 24 bits.
+    Product(Sign),
+    /// The sum of three edge numbers.
+    Sum(Sign),
+    /// The reciprocal of such a sum.
+    Reciprocal(Sign),
+    /// 1 less two weights.
+    Rest(Sign),
+    /// The binary exponent of a positive number.
+    Exponent,
+    /// The number between those of three vertices.
+    Linear,
+    /// The depth between those of three vertices: three products.
+    Depth,
+    /// A floor of a number times a size.
+    Floor,
+    /// The same for distant numbers.
+    FarFloor,
+    /// A coordinate s/q.
+    Ratio,
+    /// The same for distant numbers.
+    FarRatio,
+    /// A coordinate on a face.
+    Face,
+    /// The same for distant numbers.
+    FarFace,
+    /// The level of detail of a quad.
+    Level,
+    /// A binary32 number, of which bits are given.
+    Split,
+}
+
+/// A parameter or a result.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Value<I> {
+    Number(I),
+    Binary(Binary<I>),
+}
+
+/// What a parameter may be.
+const BINARY: (Kind, Range) = (Kind::Binary, ANY_BINARY);
+
+const fn number(low: i64, high: i64) -> (Kind, Range) {
+    (Kind::Number, (low, high))
+}
+
+/// Largest size of an image, and the one of coordinates in texels.
+const SIZE: (Kind, Range) = number(1, 4096);
+
+/// Limits of quads: distant coordinates, with half an image.
+const FAR: i64 = FARTHEST + (1 << 32);
+
+impl Helper {
+    /// All helpers, in the order of the variants.
+    pub(crate) const ALL: [Helper; 21] = [
+        Helper::Cut(Sign::Positive),
+        Helper::Product(Sign::Positive),
+        Helper::Sum(Sign::Positive),
+        Helper::Reciprocal(Sign::Positive),
+        Helper::Rest(Sign::Positive),
+        Helper::Cut(Sign::Any),
+        Helper::Product(Sign::Any),
+        Helper::Sum(Sign::Any),
+        Helper::Reciprocal(Sign::Any),
+        Helper::Rest(Sign::Any),
+        Helper::Exponent,
+        Helper::Linear,
+        Helper::Depth,
+        Helper::Floor,
+        Helper::FarFloor,
+        Helper::Ratio,
+        Helper::FarRatio,
+        Helper::Face,
+        Helper::FarFace,
+        Helper::Level,
+        Helper::Split,
+    ];
+
+    /// Returns the name in printed text, without its prefix; what it is; the rules.
+    pub(crate) fn about(self) -> (&'static str, &'static str, &'static str) {
+        match self {
+            Helper::Cut(Sign::Positive) => ("cut", "n to its first 24 bits", "WGT-1"),
+            Helper::Cut(Sign::Any) => ("signed_cut", "n to its first 24 bits", "WGT-1"),
+            Helper::Product(Sign::Positive) => ("product", "a b to its first 24 bits", "WGT-1"),
+            Helper::Product(Sign::Any) => ("signed_product", "a b to its first 24 bits", "WGT-1"),
+            Helper::Sum(sign) => {
+                let name = if sign == Sign::Any { "signed_sum" } else { "sum" };
+                (name, "a + b + c, each to the 29th bit of the largest; not 0", "WGT-1")
+            }
+            Helper::Reciprocal(sign) => {
+                let name = if sign == Sign::Any { "signed_reciprocal" } else { "reciprocal" };
+                (name, "floor(2^s / a - 3/16) 2^-s, with the s that leaves 29 bits", "WGT-1")
+            }
+            Helper::Rest(Sign::Positive) => ("rest", "1 - a - b, rounded up to 24 bits", "WGT-1"),
+            Helper::Rest(Sign::Any) => ("signed_rest", "1 - a - b, rounded up to 24 bits", "WGT-1"),
+            Helper::Exponent => ("exponent", "the binary exponent of a, if that is positive", "WGT-1"),
+            Helper::Linear => ("linear", "a b + c + d e, each term to the 24th bit of the largest", "WGT-1"),
+            Helper::Depth => ("depth", "a b + c d + e f, each term to the 29th bit of the largest", "DEP-1"),
+            Helper::Floor => ("floored", "floor(size a 2^power), up to a limit", "INT-2, INT-4"),
+            Helper::FarFloor => ("far_floored", "floor(size a 2^power), up to a limit", "TEX-11"),
+            Helper::Ratio => ("ratio", "floor(size a / b 2^8), up to a limit", "TEX-15"),
+            Helper::FarRatio => ("far_ratio", "floor(size a / b 2^16), up to a limit", "TEX-11, TEX-15"),
+            Helper::Face => ("face", "floor(2^8 size (a + b) / 2 b); 0 if b is not positive", "TEX-12"),
+            Helper::FarFace => ("far_face", "floor(2^16 size (a + b) / 2 b); 0 if b is not positive", "TEX-11, TEX-12"),
+            Helper::Level => {
+                ("level", "floor(256 log2) of the larger distance from (a, b) to (c, d) or (e, f)", "TEX-10")
+            }
+            Helper::Split => ("split", "the binary32 number of these bits", "WGT-1"),
+        }
+    }
+
+    /// Returns kinds and ranges of the parameters.
+    pub(crate) fn parameters(self) -> &'static [(Kind, Range)] {
+        const EDGE: (Kind, Range) = number(-(1 << 42), 1 << 42);
+        const COVERED: (Kind, Range) = number(0, 1 << 42);
+        const COORDINATE: (Kind, Range) = number(-FAR, FAR);
+        const FLOOR: [(Kind, Range); 4] = [BINARY, SIZE, number(0, 16), number(0, 1 << 24)];
+        const FAR_FLOOR: [(Kind, Range); 4] = [BINARY, SIZE, number(0, 16), number(0, FARTHEST)];
+        const BITS: (Kind, Range) = number(0, u32::MAX as i64);
+        match self {
+            Helper::Cut(Sign::Positive) => &[COVERED],
+            Helper::Cut(Sign::Any) => &[EDGE],
+            Helper::Product(_) | Helper::Rest(_) => &[BINARY; 2],
+            Helper::Sum(_) => &[BINARY; 3],
+            Helper::Reciprocal(_) | Helper::Exponent => &[BINARY],
+            Helper::Linear => &[BINARY; 5],
+            Helper::Depth => &[BINARY; 6],
+            Helper::Floor => &FLOOR,
+            Helper::FarFloor => &FAR_FLOOR,
+            Helper::Ratio | Helper::FarRatio | Helper::Face | Helper::FarFace => &[BINARY, BINARY, SIZE],
+            Helper::Level => &[COORDINATE; 6],
+            Helper::Split => &[BITS],
+        }
+    }
+
+    /// Returns the kind of the result.
+    pub(crate) fn kind(self) -> Kind {
+        match self.range() {
+            ANY_BINARY => Kind::Binary,
+            _ => Kind::Number,
+        }
+    }
+
+    /// Returns the range of the result.
+    pub(crate) fn range(self) -> Range {
+        match self {
+            Helper::Exponent => EXPONENT,
+            Helper::Floor | Helper::Ratio | Helper::Face => (-(1 << 24), 1 << 24),
+            Helper::FarFloor | Helper::FarRatio => (-FARTHEST, FARTHEST),
+            Helper::FarFace => (-FAR, FAR),
+            Helper::Level => (lod::LEAST.into(), 1 << 15),
+            _ => ANY_BINARY,
+        }
+    }
+
+    /// Reads the rule in whole numbers of any type.
+    pub(crate) fn read<I: Integer>(self, given: &[Value<I>]) -> Value<I> {
+        let a = |at: usize| match given[at] {
+            Value::Binary(binary) => binary,
+            Value::Number(number) => Binary::whole(number),
+        };
+        let n = |at: usize| a(at).mantissa;
+        Value::Binary(match self {
+            Helper::Cut(_) => a(0).cut(),
+            Helper::Product(_) => a(0).times(a(1)).cut(),
+            Helper::Sum(_) => Binary::sum_of_edges([a(0), a(1), a(2)]),
+            Helper::Reciprocal(_) => a(0).reciprocal(),
+            Helper::Rest(Sign::Positive) => Binary::rest_of_weights(a(0), a(1)),
+            Helper::Rest(Sign::Any) => Binary::rest(a(0), a(1)),
+            Helper::Linear => Linear { first: a(1), second: a(2), third: a(4) }.at([a(0), a(0), a(3)]),
+            Helper::Depth => depth::sum_of_products([[a(0), a(1)], [a(2), a(3)], [a(4), a(5)]]),
+            Helper::Split => Binary::from_bits(n(0)),
+            Helper::Exponent => return Value::Number(a(0).exponent()),
+            Helper::Floor => return Value::Number(a(0).floored(n(1), n(2), n(3))),
+            Helper::FarFloor => return Value::Number(a(0).far_floored(n(1), n(2), n(3))),
+            Helper::Ratio => return Value::Number(ratio(a(0), a(1), n(2))),
+            Helper::FarRatio => return Value::Number(quad_ratio(a(0), a(1), n(2))),
+            // On its own face a direction lies within it.
+            Helper::Face => return Value::Number(face_coordinate(a(0), a(1), n(2), 8).limited(0, 1 << 24)),
+            Helper::FarFace => return Value::Number(face_coordinate(a(0), a(1), n(2), 16)),
+            Helper::Level => {
+                return Value::Number(lod::log2_of_steps([[n(0), n(1)], [n(2), n(3)], [n(4), n(5)]]));
+            }
+        })
+    }
+
+    /// Computes the result from operands, of which binary numbers are packed.
+    pub(crate) fn of(self, operands: [i64; 6]) -> i64 {
+        let given = self.parameters().iter().zip(operands).map(|((kind, _), value)| match kind {
+            Kind::Binary => {
+                let (mantissa, exponent) = unpacked(value);
+                Value::Binary(Binary { mantissa, exponent })
+            }
+            _ => Value::Number(value),
+        });
+        match self.read(&given.collect::<Vec<_>>()) {
+            Value::Number(number) => number,
+            Value::Binary(Binary { mantissa, exponent }) => packed(mantissa, exponent),
+        }
+    }
+
+    /// Returns the range of mantissas that the helper is given.
+    pub(crate) fn mantissas(self) -> Range {
+        match self {
+            // The sum of edge numbers of a covered pixel is never 0.
+            Helper::Reciprocal(Sign::Positive) => (1, i32::MAX.into()),
+            Helper::Reciprocal(Sign::Any) => MANTISSA,
+            Helper::Rest(Sign::Positive) => (0, 1 << 24),
+            Helper::Rest(Sign::Any) => (-(1 << 24), 1 << 24),
+            Helper::Product(Sign::Positive) | Helper::Sum(Sign::Positive) => (0, 1 << 29),
+            Helper::Linear | Helper::Depth | Helper::Product(_) | Helper::Sum(_) | Helper::Exponent => {
+                (-(1 << 29), 1 << 29)
+            }
+            _ => (-(1 << 26), 1 << 26),
+        }
+    }
+
+    /// Returns a parameter of the printed function.
+    pub(crate) fn parameter(self, at: usize, kind: Kind, range: Range) -> Local {
+        let name = match (self, at) {
+            (Helper::Cut(_), _) => "n",
+            (Helper::Floor | Helper::FarFloor, 1..) => ["", "size", "power", "limit"][at],
+            (Helper::Ratio | Helper::FarRatio | Helper::Face | Helper::FarFace, 2) => "size",
+            _ => ["a", "b", "c", "d", "e", "f"][at],
+        };
+        Local { name, kind, range }
+    }
+}

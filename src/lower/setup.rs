@@ -1,0 +1,215 @@
+//! Makes the constants of a triangle from its vertices, as set-up computes them once.
+
+use std::collections::{BTreeSet, HashMap};
+
+use ninebit::engine::context::TriangleContext;
+use ninebit::number::Integer;
+use ninebit::plan::{Plan, PlannedDraw};
+use ninebit::raster::binary::Binary;
+use ninebit::raster::fog;
+use ninebit::raster::setup::{EdgeFunctions, edge_function, is_inside};
+use ninebit::raster::stroke::Figure;
+use ninebit::raster::weights::{Linear, ratios};
+use ninebit::state::{CompareFunction, Profile};
+use ninebit::texture::coordinates::wrapped;
+use ninebit::texture::planned::PlannedUnit;
+
+use crate::binary::{Called, call};
+use crate::code::{Code, Line, Operand, Operation, Test, run, value_of};
+use crate::helper::Helper;
+use crate::input::Input;
+use crate::number::Number;
+use crate::pixel::Function;
+use crate::triangle::{Attribute, Field, Part};
+use crate::truth::Truth;
+
+/// The code that makes the constants which a function reads.
+#[derive(Debug)]
+pub struct Setup {
+    /// The operations in order.
+    pub lines: Vec<Line>,
+    /// The constants and the lines that hold them.
+    pub outputs: Vec<(Field, Operand)>,
+}
+
+impl Setup {
+    /// Makes the code for the function of a draw's whole pixel.
+    pub fn new(plan: &Plan, draw: &PlannedDraw, function: &Function) -> Setup {
+        let code = Code::default();
+        let reader = Reader { code: &code, profile: plan.profile, draw };
+        let fields = function.inputs().into_iter().filter_map(|input| match input {
+            // The offset of DEP-5 is its caller's.
+            Input::Triangle(Field::Offset | Field::OffsetExponent) => None,
+            Input::Triangle(field) => Some(field),
+            _ => None,
+        });
+        let fields: BTreeSet<Field> = fields.chain(fields_of_coverage()).collect();
+        let outputs: Vec<(Field, Operand)> = fields.into_iter().map(|field| (field, reader.field(field))).collect();
+        let (lines, renamed) = code.kept(&outputs.iter().map(|output| output.1).collect::<Vec<_>>());
+        Setup { lines, outputs: outputs.into_iter().map(|(field, operand)| (field, renamed(operand))).collect() }
+    }
+
+    /// Computes the constants of a triangle, of which binary numbers are [packed](crate::code::packed).
+    pub fn constants(&self, context: &TriangleContext<'_>) -> HashMap<Field, i64> {
+        let values = run(&self.lines, |input| match input {
+            Input::Vertex(k, attribute) => attribute.of(context, k),
+            _ => 0,
+        });
+        let mut constants: HashMap<Field, i64> =
+            self.outputs.iter().map(|(field, operand)| (*field, value_of(&values, *operand))).collect();
+        let offset = context.depth.offset;
+        constants.insert(Field::Offset, offset.mantissa);
+        constants.insert(Field::OffsetExponent, if offset.mantissa == 0 { 0 } else { offset.exponent });
+        if context.triangle.figure() != Figure::Triangle {
+            // Lines and points are set up otherwise.
+            for (k, [a, b, c]) in context.triangle.edge_functions().into_iter().enumerate() {
+                for (field, value) in [(Field::EdgeX(k), a), (Field::EdgeY(k), b), (Field::Edge(k), c)] {
+                    constants.insert(field, value);
+                }
+            }
+        }
+        constants
+    }
+}
+
+impl Attribute {
+    /// Returns what vertex `k` of a triangle has.
+    pub fn of(self, context: &TriangleContext<'_>, k: usize) -> i64 {
+        let bits = |value: f32| i64::from(value.to_bits());
+        let vertices = context.vertices();
+        match self {
+            Attribute::Position(axis) => context.positions()[k][axis].into(),
+            Attribute::Z => bits(context.depth.z[k]),
+            Attribute::W => bits(vertices.position(3)[k]),
+            Attribute::Color(set, channel) => context.colors()[set][k][channel].into(),
+            Attribute::Coordinate(n, component) => {
+                let unit = context.draw.units.iter().find(|unit| unit.index == n);
+                let set = |unit: &PlannedUnit| wrapped(unit, vertices.coordinates(unit.stage.coordinate_set));
+                unit.map_or(0, |unit| bits(set(unit)[k][component]))
+            }
+            Attribute::Fog => {
+                let fog = vertices.fog()[k];
+                bits(if context.draw.fog.function.is_none() { fog::limited(fog) } else { fog })
+            }
+        }
+    }
+}
+
+/// Returns the code that tells whether a triangle covers a pixel, 1 or 0.
+pub(crate) fn coverage() -> (Vec<Line>, Operand) {
+    let code = Code::default();
+    let given = |input: Input| Number::new(&code, code.input(input, input.range()));
+    let (x, y) = (given(Input::X), given(Input::Y));
+    code.by("RAS-3");
+    let inside = [0, 1, 2].map(|k| {
+        let field = |field: Field| given(Input::Triangle(field));
+        let e = edge_function([Field::EdgeX(k), Field::EdgeY(k), Field::Edge(k)].map(field), x, y);
+        is_inside(e, !field(Field::Owns(k)).is_zero())
+    });
+    let covers = (inside[0] & inside[1] & inside[2]).number().operand();
+    let (lines, renamed) = code.kept(&[covers]);
+    (lines, renamed(covers))
+}
+
+/// Returns the constants that coverage takes.
+fn fields_of_coverage() -> impl Iterator<Item = Field> {
+    (0..3).flat_map(|k| [Field::EdgeX(k), Field::EdgeY(k), Field::Edge(k), Field::Owns(k)])
+}
+
+/// Reads the rules of set-up.
+struct Reader<'a, 's> {
+    code: &'a Code,
+    profile: Profile,
+    draw: &'s PlannedDraw,
+}
+
+impl<'a> Reader<'a, '_> {
+    fn input(&self, k: usize, attribute: Attribute) -> Number<'a> {
+        let input = Input::Vertex(k, attribute);
+        Number::new(self.code, self.code.input(input, input.range()))
+    }
+
+    fn inputs(&self, attribute: Attribute) -> [Number<'a>; 3] {
+        [0, 1, 2].map(|k| self.input(k, attribute))
+    }
+
+    /// Returns a binary32 number, of which bits are given.
+    fn number(&self, bits: Number<'a>) -> Called<'a> {
+        Called::of(self.code, call(self.code, Helper::Split, &[bits.operand()]))
+    }
+
+    fn difference(&self, a: Number<'a>, b: Number<'a>) -> Number<'a> {
+        Number::new(self.code, self.code.make(Operation::Difference(a.operand(), b.operand())))
+    }
+
+    fn linear(&self, attribute: Attribute, part: Part) -> Operand {
+        self.code.by("WGT-1");
+        let linear =
+            Linear::from_values(self.inputs(attribute), |a, b| self.difference(a, b), |bits| self.number(bits));
+        let of = match part {
+            Part::Second => linear.second,
+            Part::First => linear.first,
+            Part::Third => linear.third,
+        };
+        of.operand(self.code)
+    }
+
+    fn field(&self, field: Field) -> Operand {
+        match field {
+            Field::EdgeX(k) => self.edges().a[k].operand(),
+            Field::EdgeY(k) => self.edges().b[k].operand(),
+            Field::Edge(k) => self.edges().c[k].operand(),
+            Field::Owns(k) => self.edges().owns[k].number().operand(),
+            Field::Ratio(k) => self.ratio(k),
+            Field::Color(set, channel, k) => self.input(k, Attribute::Color(set, channel)).operand(),
+            Field::Coordinate(unit, component, part) => self.linear(Attribute::Coordinate(unit, component), part),
+            Field::Fog(part) => self.linear(Attribute::Fog, part),
+            Field::FogByte => self.fog_byte(),
+            Field::Depth(k) => self.number(self.input(k, Attribute::Z)).operand(self.code),
+            Field::DepthDifference(reference, k) => {
+                self.code.by("DEP-1");
+                let [z, from] = [k, reference].map(|k| self.input(k, Attribute::Z));
+                self.number(self.difference(z, from)).operand(self.code)
+            }
+            Field::Offset | Field::OffsetExponent => Operand::Constant(0),
+        }
+    }
+
+    fn edges(&self) -> EdgeFunctions<Number<'a>> {
+        self.code.by("RAS-2");
+        EdgeFunctions::new(self.inputs(Attribute::Position(0)), self.inputs(Attribute::Position(1)))
+    }
+
+    /// WGT-1, INT-6: returns a ratio of w, which is 1 where all w are one.
+    fn ratio(&self, k: usize) -> Operand {
+        self.code.by("INT-6");
+        let w = self.inputs(Attribute::W).map(|w| match self.profile {
+            Profile::Nv10 => {
+                Number::new(self.code, self.code.make(Operation::And(w.operand(), Operand::Constant(0xffff_ff00))))
+            }
+            Profile::Nv2a => w,
+        });
+        self.code.by("WGT-1");
+        let equal = |a: Number<'a>, b: Number<'a>| {
+            Truth::new(self.code, Test(CompareFunction::Equal, [a.operand(), b.operand()]))
+        };
+        let is_flat = equal(w[0], w[1]) & equal(w[1], w[2]);
+        let ratios = ratios(w.map(|w| self.number(w)));
+        let one = Called::Known(Binary::ONE);
+        ninebit::raster::weights::Number::or(one, is_flat, ratios[k]).operand(self.code)
+    }
+
+    /// FOG-4, FOG-5: returns the byte of a triangle with a coordinate that is not finite, or -1.
+    fn fog_byte(&self) -> Operand {
+        self.code.by("FOG-5");
+        let Some(function) = &self.draw.fog.function else { return Operand::Constant(-1) };
+        let exponent = Operand::Constant(0x7f80_0000);
+        let is_infinite = self.inputs(Attribute::Fog).map(|fog| {
+            let bits = self.code.make(Operation::And(fog.operand(), exponent));
+            Truth::new(self.code, Test(CompareFunction::Equal, [bits, exponent]))
+        });
+        let [a, b, c] = is_infinite;
+        let byte = Number::Constant(fog::not_finite(function.mode).into());
+        Integer::or(byte, a | b | c, Number::Constant(-1)).operand()
+    }
+}

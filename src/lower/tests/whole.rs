@@ -1,0 +1,165 @@
+//! Draws scenes by printed functions of whole pixels, and compares every stored word with the engine's.
+//!
+//! `NINEBIT_WHOLE_SCENES` is the number of random scenes, `NINEBIT_WHOLE_SEED` selects others, and `NINEBIT_WHOLE_EVERY` is a step through the scenes
+//! of the repository. `CC` names the C compiler and `NINEBIT_LOWER_CFLAGS` its options.
+#![allow(missing_docs, unreachable_pub, dead_code, reason = "modules share files of which each uses its part")]
+#![allow(clippy::unwrap_used, clippy::float_arithmetic, reason = "tests fail by panicking")]
+
+#[path = "common/compiled.rs"]
+mod compiled;
+#[path = "common/drawn.rs"]
+mod drawn;
+#[path = "common/setting.rs"]
+mod setting;
+#[path = "common/shaded.rs"]
+mod shaded;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use drawn::{Printed, difference};
+use ninebit::engine::{RenderOptions, render};
+use ninebit::limits::Limits;
+use ninebit::plan::{Plan, PlanOptions};
+use ninebit::random::Random;
+use ninebit::state::{Named as _, Policies, Scene};
+use ninebit_lower::Refusal;
+use ninebit_test_support::random_scene;
+use proptest::strategy::{Strategy, ValueTree};
+use setting::{any_policies, compiler, python, runner, setting, works};
+
+/// Returns the scenes of the repository, sorted.
+fn scenes() -> Vec<PathBuf> {
+    let mut open = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("../../vectors/scenes")];
+    let mut found = Vec::new();
+    while let Some(folder) = open.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.to_string_lossy().into_owned();
+            if path.is_dir() {
+                open.push(path);
+            } else if name.ends_with(".ron") && !name.ends_with(".expect.ron") {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+/// Loads a scene; `None` if the file is a part of others.
+fn load(path: &Path) -> Option<Scene> {
+    ninebit_scene::load(path, &Limits::default()).ok().map(|loaded| loaded.scene)
+}
+
+/// Comparisons of a pixel with a triangle that a shader does in seconds.
+const MAX_COMPARISONS: usize = 20_000_000;
+
+/// How functions run.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Way {
+    /// By their lines.
+    Lines,
+    /// Printed in C and compiled.
+    C,
+    /// Printed in WGSL, for scenes that are small enough.
+    Wgsl,
+}
+
+/// Draws a scene by its functions and compares it.
+///
+/// # Errors
+/// States that are not printed.
+fn hold(scene: &Scene, policies: Policies, way: Way, what: &str) -> Result<(), String> {
+    let plan = Plan::compile(scene, &PlanOptions { policies, ..PlanOptions::default() }).unwrap();
+    let printed = Printed::new(scene, &plan)?;
+    let folder = tempfile::tempdir().unwrap();
+    let found = match way {
+        Way::Lines => printed.run(),
+        Way::C => printed.compiled(folder.path()).unwrap_or_else(|error| panic!("{what}: {error}")),
+        Way::Wgsl if !printed.is_plain() || printed.comparisons() > MAX_COMPARISONS => {
+            return Err("too large".to_string());
+        }
+        Way::Wgsl => printed.shaded(folder.path()).unwrap_or_else(|error| panic!("{what}: {error}")),
+    };
+    difference(&plan, &render(&plan, &RenderOptions::default()), &found, what);
+    Ok(())
+}
+
+/// Draws some scenes of the repository.
+fn hold_committed(way: Way, step: usize) {
+    let (mut refused, mut drawn) = (BTreeMap::<String, Vec<String>>::new(), 0);
+    for path in scenes().into_iter().step_by(step) {
+        let Some(scene) = load(&path) else { continue };
+        match hold(&scene, Policies::DEFAULT, way, &path.to_string_lossy()) {
+            Ok(()) => drawn += 1,
+            Err(refusal) => {
+                let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+                refused.entry(refusal).or_default().push(name);
+            }
+        }
+    }
+    println!("{drawn} scenes; refused: {refused:?}");
+    assert!(drawn > 0, "refused: {refused:?}");
+}
+
+#[test]
+fn the_page_lists_all_refusals() {
+    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/lower.md")).unwrap();
+    let [_, table] = page.split("<!-- held by src/lower/tests/whole.rs: begin -->\n").collect::<Vec<_>>()[..] else {
+        panic!("the page has one table");
+    };
+    let rows = table.lines().skip(2).take_while(|line| line.starts_with("| "));
+    let listed: Vec<&str> = rows.map(|row| row.split(" | ").next().unwrap().trim_start_matches("| ")).collect();
+    let all: Vec<&str> = Refusal::ALL.iter().map(|refusal| refusal.name()).collect();
+    assert_eq!(listed, all);
+}
+
+#[test]
+fn lines_of_committed_scenes_draw_them() {
+    hold_committed(Way::Lines, setting("NINEBIT_WHOLE_EVERY").unwrap_or(7) as usize);
+}
+
+#[test]
+fn printed_c_draws_committed_scenes() {
+    if works(&compiler(), &["--version"]) {
+        hold_committed(Way::C, setting("NINEBIT_WHOLE_EVERY").unwrap_or(16) as usize);
+    }
+}
+
+#[test]
+fn printed_wgsl_draws_scenes() {
+    if works(&python(), &["-c", "import wgpu, numpy"]) {
+        hold_committed(Way::Wgsl, setting("NINEBIT_WHOLE_EVERY").unwrap_or(40) as usize);
+        let count = setting("NINEBIT_WHOLE_SCENES").unwrap_or(200) / 40;
+        hold_random(Way::Wgsl, setting("NINEBIT_WHOLE_SEED").unwrap_or(43), count);
+    }
+}
+
+/// Draws random scenes. Returns how many were printed.
+fn hold_random(way: Way, seed: u64, count: u64) -> u64 {
+    let (mut runner, mut random, mut drawn) = (runner(seed), Random::seeded(seed), 0);
+    let scenes = random_scene::scene();
+    for number in 0..count {
+        let scene = scenes.new_tree(&mut runner).unwrap().current();
+        let policies = if number % 2 == 1 { any_policies(&mut random) } else { Policies::DEFAULT };
+        drawn += u64::from(hold(&scene, policies, way, &format!("scene {number} of seed {seed}")).is_ok());
+    }
+    drawn
+}
+
+#[test]
+fn lines_of_random_scenes_draw_them() {
+    let (seed, count) = (setting("NINEBIT_WHOLE_SEED").unwrap_or(41), setting("NINEBIT_WHOLE_SCENES").unwrap_or(200));
+    let drawn = hold_random(Way::Lines, seed, count);
+    println!("{drawn} of {count} scenes are printed");
+    assert!(drawn > count / 4);
+}
+
+#[test]
+fn printed_c_draws_random_scenes() {
+    if works(&compiler(), &["--version"]) {
+        let count = setting("NINEBIT_WHOLE_SCENES").unwrap_or(200) / 20;
+        hold_random(Way::C, setting("NINEBIT_WHOLE_SEED").unwrap_or(42), count);
+    }
+}

@@ -1,0 +1,138 @@
+//! Constants of a triangle, and what they are made of.
+
+use crate::kind::{ANY_BINARY, Kind, Range};
+
+/// A part of a number of the vertices, as [`Linear`](ninebit::raster::weights::Linear) has it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Part {
+    /// That of the second vertex.
+    Second,
+    /// The difference of the first from it.
+    First,
+    /// The difference of the third from it.
+    Third,
+}
+
+impl Part {
+    /// All parts, in the order of the variants.
+    pub const ALL: [Part; 3] = [Part::Second, Part::First, Part::Third];
+}
+
+/// A constant of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Field {
+    /// Slope of an edge function along x.
+    EdgeX(usize),
+    /// Slope of an edge function along y.
+    EdgeY(usize),
+    /// An edge function at the centre of pixel (0, 0).
+    Edge(usize),
+    /// 1 if a pixel exactly on the edge belongs to the triangle.
+    Owns(usize),
+    /// Ratio of w of a vertex; 1 without perspective.
+    Ratio(usize),
+    /// A colour of a vertex: primary or secondary, channel, vertex.
+    Color(usize, usize, usize),
+    /// A coordinate of a unit: unit, component, part.
+    Coordinate(usize, usize, Part),
+    /// The fog coordinate.
+    Fog(Part),
+    /// The fog byte of all pixels, or -1.
+    FogByte,
+    /// The depth of a vertex.
+    Depth(usize),
+    /// The difference of a vertex's depth from that of another: that one, the vertex.
+    DepthDifference(usize, usize),
+    /// Mantissa of the offset of depths.
+    Offset,
+    /// Exponent of the offset of depths.
+    OffsetExponent,
+}
+
+impl Field {
+    /// Returns the kind of the constant.
+    pub fn kind(self) -> Kind {
+        match self {
+            Field::Ratio(_) | Field::Coordinate(..) | Field::Fog(_) | Field::Depth(_) | Field::DepthDifference(..) => {
+                Kind::Binary
+            }
+            _ => Kind::Number,
+        }
+    }
+
+    /// Returns the member of the printed structure.
+    pub(crate) fn member(self) -> String {
+        match self {
+            Field::EdgeX(k) => format!("edge_x[{k}]"),
+            Field::EdgeY(k) => format!("edge_y[{k}]"),
+            Field::Edge(k) => format!("edge[{k}]"),
+            Field::Owns(k) => format!("owns[{k}]"),
+            Field::Ratio(k) => format!("ratio[{k}]"),
+            Field::Color(set, channel, k) => format!("color[{set}][{channel}][{k}]"),
+            Field::Coordinate(unit, component, part) => format!("coordinate[{unit}][{component}][{}]", part as usize),
+            Field::Fog(part) => format!("fog[{}]", part as usize),
+            Field::FogByte => "fog_byte".to_string(),
+            Field::Depth(k) => format!("depth[{k}]"),
+            Field::DepthDifference(reference, k) => format!("depth_difference[{reference}][{k}]"),
+            Field::Offset => "offset".to_string(),
+            Field::OffsetExponent => "offset_exponent".to_string(),
+        }
+    }
+
+    pub(crate) fn range(self) -> Range {
+        match self {
+            Field::EdgeX(_) | Field::EdgeY(_) => (-(1 << 22), 1 << 22),
+            Field::Edge(_) => (-(1 << 40), 1 << 40),
+            Field::Owns(_) => (0, 1),
+            Field::Color(..) => (0, 255),
+            Field::FogByte => (-1, 255),
+            Field::Offset => (-(1 << 62), 1 << 62),
+            Field::OffsetExponent => (-2000, 2000),
+            _ => ANY_BINARY,
+        }
+    }
+}
+
+/// What a vertex has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Attribute {
+    /// Column or row in 1/16 pixel (RAS-1): axis.
+    Position(usize),
+    /// z in steps of the depth buffer, binary32.
+    Z,
+    /// w, binary32.
+    W,
+    /// A colour byte: primary or secondary, channel.
+    Color(usize, usize),
+    /// A coordinate, binary32: unit, component.
+    Coordinate(usize, usize),
+    /// The fog coordinate, or the factor limited to 0..1, binary32.
+    Fog,
+}
+
+impl Attribute {
+    /// Returns the kind of the attribute.
+    pub fn kind(self) -> Kind {
+        if matches!(self, Attribute::Position(_) | Attribute::Color(..)) { Kind::Number } else { Kind::Word }
+    }
+
+    /// Returns the member of the printed structure.
+    pub(crate) fn member(self) -> String {
+        match self {
+            Attribute::Position(axis) => format!("position[{axis}]"),
+            Attribute::Z => "z".to_string(),
+            Attribute::W => "w".to_string(),
+            Attribute::Color(set, channel) => format!("color[{set}][{channel}]"),
+            Attribute::Coordinate(unit, component) => format!("coordinate[{unit}][{component}]"),
+            Attribute::Fog => "fog".to_string(),
+        }
+    }
+
+    pub(crate) fn range(self) -> Range {
+        match self {
+            Attribute::Position(_) => (-(1 << 16), 1 << 16),
+            Attribute::Color(..) => (0, 255),
+            _ => (0, u32::MAX.into()),
+        }
+    }
+}

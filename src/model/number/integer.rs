@@ -1,0 +1,175 @@
+//! Whole numbers without an overflow: the text of rules over [`Integer`] runs in machine numbers, and can be read where rules are printed.
+
+use crate::state::CompareFunction;
+use std::ops::{Add, BitAnd, BitOr, BitXor, Mul, Not, Sub};
+
+/// Truth of a comparison: `bool`, or a symbolic value where rules are printed.
+pub trait Choice:
+    Copy + BitAnd<Output = Self> + BitOr<Output = Self> + BitXor<Output = Self> + Not<Output = Self>
+{
+}
+
+impl Choice for bool {}
+
+/// A whole number of at most 63 bits and a sign. There are no branches: a choice takes one of two numbers that both exist.
+pub trait Integer: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+    /// Truth of a comparison.
+    type Choice: Choice;
+
+    /// Returns a constant.
+    fn new(value: i64) -> Self;
+    /// Returns the number of significant bits of the magnitude.
+    fn bits(self) -> Self;
+    /// Returns the number times 2^`by`, for 0 to 63. What does not fit is not used.
+    fn up(self, by: Self) -> Self;
+    /// Returns the floor of the number over 2^`by`, for 0 to 63.
+    fn down(self, by: Self) -> Self;
+    /// Returns the bits of a number that is not negative which `mask` has.
+    fn masked(self, mask: i64) -> Self;
+    /// Returns the remainder of a division by a positive number, which is not negative. A number that is not constant must be a power of two.
+    fn modulo(self, by: Self) -> Self;
+    /// Returns the floor of a quotient. This number must not be negative, and `by` is positive.
+    fn quotient(self, by: Self) -> Self;
+    /// Compares two numbers, of which this is on the left.
+    fn compared(self, function: CompareFunction, other: Self) -> Self::Choice;
+    /// Returns this number where `choice` holds, otherwise the other.
+    fn or(self, choice: Self::Choice, other: Self) -> Self;
+    /// Returns entry `self` of a table.
+    fn entry(self, table: &'static [u8]) -> Self;
+
+    /// Returns the number, which is known to be within these bounds.
+    #[inline(always)]
+    fn within(self, _low: i64, _high: i64) -> Self {
+        self
+    }
+    /// Returns the smaller of two numbers.
+    #[inline(always)]
+    fn least(self, other: Self) -> Self {
+        self.or(self.is_below(other), other)
+    }
+    /// Returns the larger of two numbers.
+    #[inline(always)]
+    fn greatest(self, other: Self) -> Self {
+        other.or(self.is_below(other), self)
+    }
+    /// Limits the number.
+    #[inline(always)]
+    fn limited(self, low: i64, high: i64) -> Self {
+        self.least(Self::new(high)).greatest(Self::new(low))
+    }
+    /// Returns whether this number is less than the other.
+    #[inline(always)]
+    fn is_below(self, other: Self) -> Self::Choice {
+        self.compared(CompareFunction::Less, other)
+    }
+    /// Returns whether this number is negative.
+    #[inline(always)]
+    fn is_negative(self) -> Self::Choice {
+        self.is_below(Self::new(0))
+    }
+    /// Returns whether this number is 0.
+    #[inline(always)]
+    fn is_zero(self) -> Self::Choice {
+        self.compared(CompareFunction::Equal, Self::new(0))
+    }
+    /// Returns the negative where `choice` holds, otherwise the number itself.
+    #[inline(always)]
+    fn negated(self, choice: Self::Choice) -> Self {
+        (Self::new(0) - self).or(choice, self)
+    }
+    /// Returns the magnitude.
+    #[inline(always)]
+    fn magnitude(self) -> Self {
+        self.greatest(Self::new(0) - self)
+    }
+}
+
+/// Number of the bit above the highest of 0: below that of all other numbers.
+pub(crate) const LEAST_TOP: i64 = -4096;
+
+/// Converts numbers, each a mantissa and an exponent, to block floating point. The number of the largest magnitude
+/// keeps exactly `keep` bits (at most 62), and the others are floored to the same exponent. Returns the mantissas and
+/// that exponent.
+#[inline(always)]
+pub(crate) fn align<I: Integer, const N: usize>(values: [(I, I); N], keep: i64) -> ([I; N], I) {
+    let least = I::new(LEAST_TOP);
+    let mut top = least;
+    for (n, exponent) in values {
+        top = top.greatest(least.or(n.is_zero(), n.bits() + exponent));
+    }
+    let top = top.or(least.is_below(top), I::new(0));
+    let aligned = values.map(|(n, exponent)| {
+        let up = (exponent + I::new(keep) - top).limited(-63, 63);
+        // A number other than 0 that is shifted up stays within `keep` bits.
+        n.down((I::new(0) - up).greatest(I::new(0))).or(up.is_negative(), n.up(up.greatest(I::new(0))))
+    });
+    (aligned, top - I::new(keep))
+}
+
+/// Implements the operations of machine numbers.
+macro_rules! machine {
+    ($($type:ident)+) => { $(
+        impl Integer for $type {
+            type Choice = bool;
+            #[inline(always)]
+            fn new(value: i64) -> $type {
+                value as $type
+            }
+            #[inline(always)]
+            fn bits(self) -> $type {
+                ($type::BITS - self.unsigned_abs().leading_zeros()) as $type
+            }
+            #[inline(always)]
+            fn up(self, by: $type) -> $type {
+                self << by
+            }
+            #[inline(always)]
+            fn down(self, by: $type) -> $type {
+                self >> by
+            }
+            #[inline(always)]
+            fn masked(self, mask: i64) -> $type {
+                self & mask as $type
+            }
+            #[inline(always)]
+            fn modulo(self, by: $type) -> $type {
+                if by & (by - 1) == 0 { self & (by - 1) } else { self.rem_euclid(by) }
+            }
+            #[inline(always)]
+            fn quotient(self, by: $type) -> $type {
+                self / by
+            }
+            #[inline(always)]
+            fn compared(self, function: CompareFunction, other: $type) -> bool {
+                function.passes(self, other)
+            }
+            #[inline(always)]
+            fn or(self, choice: bool, other: $type) -> $type {
+                if choice { self } else { other }
+            }
+            #[inline(always)]
+            fn entry(self, table: &'static [u8]) -> $type {
+                table[self as usize].into()
+            }
+            #[inline(always)]
+            fn within(self, low: i64, high: i64) -> $type {
+                debug_assert!((low..=high).contains(&(self as i64)), "{self} is not within {low} and {high}");
+                self
+            }
+            #[inline(always)]
+            fn least(self, other: $type) -> $type {
+                self.min(other)
+            }
+            #[inline(always)]
+            fn greatest(self, other: $type) -> $type {
+                self.max(other)
+            }
+            #[inline(always)]
+            fn magnitude(self) -> $type {
+                self.abs()
+            }
+        }
+    )+ };
+}
+
+machine!(i32 i64);
