@@ -193,7 +193,7 @@ fn follow(page: &str) {
     let reads_vectors = blocks.iter().any(|block| block.language == "console" && block.reason.is_none());
     let bench = Bench::new();
     if reads_vectors {
-        for folder in ["vectors/scenes", "vectors/digests"] {
+        for folder in ["vectors/scenes", "vectors/digests", "vectors/harness/c", "vectors/harness/lower"] {
             copy(&at(folder), &bench.path(folder));
         }
     }

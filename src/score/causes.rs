@@ -5,16 +5,16 @@ use std::collections::BTreeMap;
 use ninebit::shortcut::{Shortcut, Shortcuts};
 
 use crate::chance::{Chance, Differences};
-use crate::explain::{Explained, OPEN};
+use crate::search::{Explanation, OPEN};
 
 /// A variant and what it explains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cause {
     /// One shortcut, or two.
     pub variant: Shortcuts,
-    /// Pixels that are attributed to it.
+    /// Pixels that are attributed to it: by [`choose`] an estimate from the samples, in a [`Run`](crate::Run) counted.
     pub pixels: u64,
-    /// All pixels that it yields, and those that it would yield by chance.
+    /// All pixels that it yields by the samples, and those that it would yield by chance.
     pub chance: Chance,
 }
 
@@ -35,6 +35,11 @@ impl Causes {
         self.causes.iter().map(|cause| cause.pixels).sum()
     }
 
+    /// Returns the number of pixels that a cause has to exceed.
+    pub(crate) fn least(&self) -> u64 {
+        (self.wrong / LEAST_SHARE).max(15)
+    }
+
     /// Returns the variants with their numbers, in the order in which pixels are attributed to them: one shortcut before two, and a whole shader
     /// in floats after its parts.
     pub fn narrow_first(&self) -> Vec<(usize, Shortcuts)> {
@@ -53,7 +58,7 @@ impl Causes {
 const LEAST_SHARE: u64 = 20_000;
 
 /// Chooses the causes of frames.
-pub fn choose<'a>(frames: impl Iterator<Item = &'a Explained> + Clone) -> Causes {
+pub fn choose<'a>(frames: impl Iterator<Item = &'a Explanation> + Clone) -> Causes {
     let mut actual = Differences::default();
     let mut predicted = BTreeMap::<Shortcuts, (u64, Differences)>::new();
     let mut groups = BTreeMap::<Vec<Shortcuts>, u64>::new();
@@ -90,8 +95,9 @@ pub fn choose<'a>(frames: impl Iterator<Item = &'a Explained> + Clone) -> Causes
         .map(|(variants, count)| (variants.into_iter().filter(|v| chances.contains_key(v)).collect::<Vec<_>>(), count))
         .filter(|(variants, _)| !variants.is_empty())
         .collect();
-    let chosen = cover(&groups, &chances, wrong / LEAST_SHARE);
-    Causes { causes: attribute(&groups, &chances, chosen), wrong, open }
+    let none = Causes { causes: Vec::new(), wrong, open };
+    let chosen = cover(&groups, &chances, none.least());
+    Causes { causes: attribute(&groups, &chances, chosen), ..none }
 }
 
 /// Returns the shortcuts of a greedy cover: each step adds the variant that explains the most more pixels for each added shortcut.
@@ -112,7 +118,7 @@ fn cover(groups: &[(Vec<Shortcuts>, u64)], chances: &BTreeMap<Shortcuts, Chance>
                 best = (gain, set);
             }
         }
-        if best.0 <= least.max(15) {
+        if best.0 <= least {
             return chosen;
         }
         (chosen, before) = (best.1, explained(best.1));

@@ -34,14 +34,14 @@ fn run(run: &Run) -> Value {
             "causes": causes.causes.iter().map(cause).collect::<Vec<_>>(),
         })
     });
-    let variants = run.causes.as_ref().map(crate::causes::Causes::variants).unwrap_or_default();
     let frame = |frame: &crate::explain::FrameScore| {
         json!({
             "suite": frame.suite,
             "frame": frame.name,
             "class": class(frame.class),
             "pixels": counts(&frame.counts),
-            "explained_pixels": frame.explained.as_ref().map(|explained| explained.covered(&variants).0),
+            "explained_pixels": frame.explanation.as_ref().map(|_| frame.explained()),
+            "causes": frame.attributed.iter().map(|(number, pixels)| json!([number, pixels])).collect::<Vec<_>>(),
         })
     };
     json!({

@@ -1,9 +1,9 @@
 //! The scorecard: pictures of another renderer against those of the chip, and the rules that explain what differs.
 //!
 //! A [`Subject`] is a frame with the picture that the chip, or the model, shows. [`score`] compares the other renderer's picture with it and
-//! draws the frame again with each [`Shortcut`](ninebit::shortcut::Shortcut) that can change it, and with pairs. A wrong pixel is *explained*
-//! where such a variant yields the other renderer's bytes and the rules yield the chip's. [`causes`] chooses the smallest set of shortcuts
-//! that explains the most, and drops those that explain no more than chance.
+//! draws a sample of the frame again with each [`Shortcut`](ninebit::shortcut::Shortcut) that can change it, and with several. [`causes`]
+//! chooses the smallest set of shortcuts that yields the most, and drops those that yield no more than chance. [`run()`] then draws every wrong
+//! pixel with the chosen ones: it is *explained* where one yields the other renderer's bytes and the rules yield the chip's.
 
 pub mod causes;
 mod chance;
@@ -12,14 +12,16 @@ mod folder;
 mod json;
 mod pixels;
 mod run;
+mod search;
 mod show;
 mod subject;
 
 pub use chance::Chance;
-pub use explain::{Class, Counts, Explained, FrameScore, score};
+pub use explain::{Class, Counts, FrameScore, score};
 pub use folder::{Pictures, beside_scenes, find};
 pub use json::document;
 pub use pixels::{COLORS, Sample};
 pub use run::{Run, Total, other, run, truth};
+pub use search::Explanation;
 pub use show::{Evidence, Exhibit, evidence, exhibits};
-pub use subject::{Drawing, Subject, Truth, captured, of_scene};
+pub use subject::{Drawing, Renderer, Subject, Truth, captured, of_scene};

@@ -1,9 +1,12 @@
 //! Pictures of a frame: what differs, and which cause yields it.
 
+use std::collections::BTreeMap;
+
 use ninebit::shortcut::Shortcuts;
 use ninebit_scene::image::Rgba;
 
 use crate::explain::{differing, same};
+use crate::search::{Explanation, scattered};
 use crate::subject::Subject;
 
 /// Colours of causes, which are told apart on light and dark ground.
@@ -39,48 +42,93 @@ pub struct Sample {
     pub other: [u8; 4],
 }
 
+impl Sample {
+    /// Returns the largest difference of a channel.
+    pub(crate) fn size(&self) -> u8 {
+        (0..3).map(|n| self.truth[n].abs_diff(self.other[n])).max().unwrap_or(0)
+    }
+}
+
 /// The causes of a frame's wrong pixels.
 #[derive(Clone, Debug)]
 pub(crate) struct CauseMap {
     width: u32,
     /// For each pixel, `None` if it is right, otherwise the number of its cause, or `None` if it has none.
     of: Vec<Option<Option<usize>>>,
-    /// For each cause, the first pixel that it explains and that differs the most.
-    pub(crate) samples: Vec<Option<Sample>>,
+    /// Of each cause that yields pixels, how many, and the first of those that differ the most.
+    pub(crate) found: BTreeMap<usize, (u64, Sample)>,
+    /// Number of wrong pixels where the rules do not yield the chip's bytes.
+    pub(crate) open: u64,
 }
 
+/// So many pixels tell whether a variant yields any of a frame, before it is drawn for all.
+const PROBE: u64 = 256;
+
 impl CauseMap {
-    /// Attributes each wrong pixel to the first of `variants` that yields it.
-    pub(crate) fn new(subject: &Subject, truth: &Rgba, other: &Rgba, variants: &[Shortcuts]) -> CauseMap {
+    /// Attributes each wrong pixel to the first of `variants`, which have the numbers of causes, that yields it.
+    pub(crate) fn new(
+        subject: &Subject,
+        (truth, other): (&Rgba, &Rgba),
+        explanation: Option<&Explanation>,
+        variants: &[(usize, Shortcuts)],
+    ) -> CauseMap {
         let (wrong, width) = (differing(subject, truth, other), truth.width());
-        let mut of: Vec<Option<Option<usize>>> = wrong.iter().map(|wrong| wrong.then_some(None)).collect();
-        let mut samples = vec![None; variants.len()];
-        let drawing = subject.drawing.as_ref();
-        let concerning = drawing.map_or(Shortcuts::NONE, |drawing| drawing.shortcuts());
-        let ours = drawing.and_then(|drawing| drawing.draw(Shortcuts::NONE, None)).unwrap_or_default();
-        let (truth, other) = (truth.pixels(), other.pixels());
-        for (number, variant) in variants.iter().enumerate() {
-            if !variant.iter().all(|shortcut| concerning.contains(shortcut)) {
-                continue;
-            }
-            let open = |at: usize| of[at] == Some(None) && ours.get(at).is_some_and(|pixel| same(*pixel, truth[at]));
-            let mask: Vec<bool> = (0..of.len()).map(open).collect();
-            if !mask.contains(&true) {
-                continue;
-            }
-            let drawn = drawing.and_then(|drawing| drawing.draw(*variant, Some(&mask))).unwrap_or_default();
-            let mut largest = 0;
-            for at in (0..drawn.len()).filter(|at| mask[*at] && same(drawn[*at], other[*at])) {
-                of[at] = Some(Some(number));
-                let size = (0..3).map(|n| truth[at][n].abs_diff(other[at][n])).max().unwrap_or(0);
-                if size > largest {
-                    largest = size;
-                    let place = (at as u32 % width, at as u32 / width);
-                    samples[number] = Some(Sample { at: place, truth: truth[at], other: other[at] });
-                }
+        let of = wrong.iter().map(|wrong| wrong.then_some(None)).collect();
+        let mut map = CauseMap { width, of, found: BTreeMap::new(), open: 0 };
+        let renderer = subject.drawing.as_ref().and_then(|drawing| drawing.renderer());
+        let (Some(explanation), Some(renderer)) = (explanation, renderer) else { return map };
+        let mut left = wrong;
+        if !explanation.is_closed {
+            let ours = renderer.draw(Shortcuts::NONE, None).unwrap_or_default();
+            for (at, left) in left.iter_mut().enumerate().filter(|(_, left)| **left) {
+                *left = ours.get(at).is_some_and(|pixel| same(*pixel, truth.pixels()[at]));
+                map.open += u64::from(!*left);
             }
         }
-        CauseMap { width, of, samples }
+        for (number, variant) in variants.iter().filter(|(_, variant)| explanation.admits(*variant)) {
+            map.attribute(*number, (truth.pixels(), other.pixels()), &mut left, |mask| {
+                renderer.draw(*variant, Some(mask))
+            });
+        }
+        map
+    }
+
+    /// Attributes those of the pixels that are left to a cause that `draw` yields.
+    fn attribute(
+        &mut self,
+        number: usize,
+        (truth, other): (&[[u8; 4]], &[[u8; 4]]),
+        left: &mut [bool],
+        draw: impl Fn(&[bool]) -> Option<Vec<[u8; 4]>>,
+    ) {
+        let count = left.iter().filter(|left| **left).count() as u64;
+        if count > 8 * PROBE {
+            let mut probe = vec![false; left.len()];
+            scattered(left, count / PROBE).into_iter().for_each(|at| probe[at] = true);
+            let drawn = draw(&probe).unwrap_or_default();
+            if !(0..drawn.len()).any(|at| probe[at] && same(drawn[at], other[at])) {
+                return;
+            }
+        }
+        if count == 0 {
+            return;
+        }
+        let drawn = draw(left).unwrap_or_default();
+        let mut found: Option<(u64, Sample)> = None;
+        for at in 0..drawn.len() {
+            if !left[at] || !same(drawn[at], other[at]) {
+                continue;
+            }
+            (left[at], self.of[at]) = (false, Some(Some(number)));
+            let place = (at as u32 % self.width, at as u32 / self.width);
+            let sample = Sample { at: place, truth: truth[at], other: other[at] };
+            let (pixels, shown) = found.get_or_insert((0, sample));
+            *pixels += 1;
+            if sample.size() > shown.size() {
+                *shown = sample;
+            }
+        }
+        self.found.extend(found.map(|found| (number, found)));
     }
 
     /// Returns the picture: a colour for each cause, white where nothing explains.

@@ -2,14 +2,18 @@
 
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::shortcut::{self, Shortcuts};
+use ninebit::state::Scene;
 use ninebit_report::{SideBySideLine, side_by_side};
 use ninebit_scene::image::Rgba;
 
+use rayon::prelude::*;
+
 use crate::causes::{Cause, Causes};
+use crate::explain::FrameScore;
 use crate::folder::Pictures;
 use crate::pixels::{COLORS, CauseMap, Sample, difference};
 use crate::run::{Run, other, truth};
-use crate::subject::Subject;
+use crate::subject::{Drawing, Subject};
 
 /// A frame with its pictures.
 #[derive(Clone, Debug)]
@@ -20,15 +24,15 @@ pub struct Exhibit {
     pub file: String,
     /// The chip's picture, the other renderer's, the difference, and the causes.
     pub pictures: [(&'static str, Rgba); 4],
-    /// For each cause, a pixel that it explains.
-    samples: Vec<Option<Sample>>,
+    /// The scene, if it is what the model draws of the frame, with the cause of the most pixels and its drawing.
+    pub scene: Option<(Scene, usize, Rgba)>,
 }
 
 /// A pixel that shows a cause.
 #[derive(Clone, Debug)]
 pub struct Evidence {
-    /// Suite and name of the frame.
-    pub frame: String,
+    /// Suite and name of the frame, and its index in the run.
+    pub frame: (String, usize),
     /// The pixel.
     pub sample: Sample,
     /// The pixel traced by the rules and by the variant, where it can be: the lines that differ.
@@ -46,10 +50,10 @@ pub fn exhibits(run: &Run, subjects: &[Subject], pictures: &Pictures, most: usiz
     let none = Causes::default();
     let causes = run.causes.as_ref().unwrap_or(&none);
     let mut wanted: Vec<usize> = Vec::new();
-    for cause in causes.causes.iter().take(COLORS.len()) {
-        let yields = |n: &usize| run.frames[*n].explained.as_ref().map_or(0, |e| e.covered(&[cause.variant]).0);
-        let best = (0..run.frames.len()).max_by_key(yields).filter(|n| yields(n) > 0);
-        wanted.extend(best.filter(|n| !wanted.contains(n)));
+    for (frame, _) in (0..causes.causes.len().min(COLORS.len())).filter_map(|number| run.samples.get(&number)) {
+        if !wanted.contains(frame) {
+            wanted.push(*frame);
+        }
     }
     let mut by_suite = std::collections::BTreeMap::<&str, usize>::new();
     for (n, frame) in run.frames.iter().enumerate().filter(|(_, frame)| frame.counts.wrong > 0) {
@@ -63,7 +67,8 @@ pub fn exhibits(run: &Run, subjects: &[Subject], pictures: &Pictures, most: usiz
     wanted.extend(worst);
     wanted.truncate(most);
     let variants = causes.narrow_first();
-    wanted.into_iter().filter_map(|frame| exhibit(frame, run, &subjects[frame], pictures, &variants)).collect()
+    let shown = |frame| exhibit(frame, run, &subjects[frame], pictures, &variants);
+    wanted.into_par_iter().filter_map(shown).collect()
 }
 
 fn exhibit(
@@ -74,37 +79,48 @@ fn exhibit(
     variants: &[(usize, Shortcuts)],
 ) -> Option<Exhibit> {
     let (truth, other) = (truth(subject).ok()?, other(subject, pictures).ok()?);
-    let sets: Vec<Shortcuts> = variants.iter().map(|(_, variant)| *variant).collect();
-    let map = CauseMap::new(subject, &truth, &other, &sets);
-    let color = |n: usize| COLORS[variants[n].0.min(COLORS.len() - 1)];
-    let mut samples = vec![None; variants.len()];
-    for ((number, _), sample) in variants.iter().zip(&map.samples) {
-        samples[*number] = *sample;
-    }
-    let difference = difference(subject, &truth, &other);
     let scored = &run.frames[frame];
+    let map = CauseMap::new(subject, (&truth, &other), scored.explanation.as_ref(), variants);
+    let color = |number: usize| COLORS[number.min(COLORS.len() - 1)];
+    let difference = difference(subject, &truth, &other);
     let file = format!("{}-{}", scored.suite, scored.name).replace(|c: char| !c.is_ascii_alphanumeric(), "_");
     let pictures = [("chip", truth), ("other", other), ("difference", difference), ("causes", map.picture(color))];
-    Some(Exhibit { frame, file: format!("{frame:04}-{file}"), pictures, samples })
+    Some(Exhibit {
+        frame,
+        file: format!("{frame:04}-{file}"),
+        pictures,
+        scene: scene(subject, &run.frames[frame], variants),
+    })
 }
 
-/// Returns for each cause a pixel of the exhibits, traced twice.
-pub fn evidence(run: &Run, subjects: &[Subject], exhibits: &[Exhibit]) -> Vec<Option<Evidence>> {
+/// Returns the scene of a frame with the cause of the most of its pixels, and the picture of that.
+fn scene(subject: &Subject, frame: &FrameScore, variants: &[(usize, Shortcuts)]) -> Option<(Scene, usize, Rgba)> {
+    let (drawing, best) = (subject.drawing.as_ref()?, frame.attributed.iter().max_by_key(|(_, pixels)| *pixels)?.0);
+    let variant = variants.iter().find(|(number, _)| *number == best)?.1;
+    let (scene, renderer) = (drawing.scene()?, drawing.renderer()?);
+    let width = scene.targets.first()?.width;
+    let alone = scene.renderer()?.draw(Shortcuts::NONE, None)?;
+    // A frame that shows depths is no picture of its scene.
+    let is_shown = renderer.draw(Shortcuts::NONE, None)? == alone;
+    is_shown.then_some((scene, best, Rgba::new(width, renderer.draw(variant, None)?)))
+}
+
+/// Returns for each cause a pixel that shows it, traced twice.
+pub fn evidence(run: &Run, subjects: &[Subject]) -> Vec<Option<Evidence>> {
     let Some(causes) = &run.causes else { return Vec::new() };
     let of = |(number, cause): (usize, &Cause)| {
-        let size = |sample: &Sample| (0..3).map(|n| sample.truth[n].abs_diff(sample.other[n])).max();
-        let found = exhibits.iter().filter_map(|exhibit| Some((exhibit, exhibit.samples[number]?)));
-        let (exhibit, sample) = found.max_by_key(|(_, sample)| size(sample))?;
-        let subject = &subjects[exhibit.frame];
+        let (frame, sample) = run.samples.get(&number)?;
+        let subject = &subjects[*frame];
         let lines = traced(subject, cause.variant, sample.at).unwrap_or_default();
-        Some(Evidence { frame: format!("{}/{}", subject.suite, subject.name), sample, lines })
+        let frame = (format!("{}/{}", subject.suite, subject.name), *frame);
+        Some(Evidence { frame, sample: *sample, lines })
     };
-    causes.causes.iter().enumerate().map(of).collect()
+    causes.causes.par_iter().enumerate().map(of).collect()
 }
 
 /// Returns the lines in which the traces of a pixel by the rules and by a variant differ.
 fn traced(subject: &Subject, variant: Shortcuts, pixel: (u32, u32)) -> Option<Vec<SideBySideLine>> {
-    let scene = subject.drawing.as_ref()?.scene();
+    let scene = subject.drawing.as_ref()?.scene()?;
     let plan = Plan::compile(&scene, &PlanOptions::default()).ok()?;
     let of = |shortcuts: Shortcuts| {
         shortcut::trace(&plan.clone().with_shortcuts(shortcuts), shortcuts, pixel, FRAGMENTS).ok()

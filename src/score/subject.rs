@@ -6,28 +6,40 @@ use ninebit::engine::{RenderOptions, cleared};
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::shortcut::{self, Mask, Shortcuts};
 use ninebit::state::{Policies, Rectangle, Scene};
-use ninebit_vectors::captures::{self, Frame, Unmatched};
+use ninebit_vectors::captures::{self, Frame, PreparedFrame, Unmatched};
 
-/// Draws a frame.
+/// A frame that the model draws.
 pub trait Drawing: Send + Sync {
+    /// Returns what draws the frame, or `None` if the scene cannot be planned.
+    fn renderer(&self) -> Option<Box<dyn Renderer>>;
+    /// Returns the scene, or `None` if no scene is the frame.
+    fn scene(&self) -> Option<Scene>;
+}
+
+/// What draws a frame, several times.
+pub trait Renderer {
     /// Returns R, G, B, A of every pixel as a renderer with shortcuts draws them, or `None` if the scene cannot be planned. Pixels outside
     /// of the mask may be left undrawn.
     fn draw(&self, shortcuts: Shortcuts, mask: Mask<'_>) -> Option<Vec<[u8; 4]>>;
     /// Returns the shortcuts that can change the frame.
     fn shortcuts(&self) -> Shortcuts;
-    /// Returns the scene.
-    fn scene(&self) -> Scene;
 }
 
 impl Drawing for Frame {
+    fn renderer(&self) -> Option<Box<dyn Renderer>> {
+        Some(Box::new(self.prepare(Policies::DEFAULT).ok()?))
+    }
+    fn scene(&self) -> Option<Scene> {
+        Frame::scene(self, &RenderOptions::default()).ok()?
+    }
+}
+
+impl Renderer for PreparedFrame {
     fn draw(&self, shortcuts: Shortcuts, mask: Mask<'_>) -> Option<Vec<[u8; 4]>> {
-        self.render_with(&RenderOptions::default(), Policies::DEFAULT, shortcuts, mask).ok()
+        self.render(&RenderOptions::default(), shortcuts, mask).ok()
     }
     fn shortcuts(&self) -> Shortcuts {
-        Frame::shortcuts(self).unwrap_or_default()
-    }
-    fn scene(&self) -> Scene {
-        self.main_scene()
+        PreparedFrame::shortcuts(self)
     }
 }
 
@@ -79,27 +91,30 @@ pub fn captured(folder: &Path, pictures: &[(String, String)]) -> Result<Vec<Subj
 }
 
 /// A scene of its own, whose first target is the picture.
-struct Drawn(Scene);
+impl Drawing for Scene {
+    fn renderer(&self) -> Option<Box<dyn Renderer>> {
+        Some(Box::new(Plan::compile(self, &PlanOptions::default()).ok()?))
+    }
+    fn scene(&self) -> Option<Scene> {
+        Some(self.clone())
+    }
+}
 
-impl Drawing for Drawn {
+impl Renderer for Plan {
     fn draw(&self, shortcuts: Shortcuts, mask: Mask<'_>) -> Option<Vec<[u8; 4]>> {
-        let plan = Plan::compile(&self.0, &PlanOptions::default()).ok()?.with_shortcuts(shortcuts);
+        let plan = self.clone().with_shortcuts(shortcuts);
         let mut frames = cleared(&plan);
         shortcut::render(&plan, shortcuts, &RenderOptions::default(), &mut frames, mask);
         frames.surfaces.first().map(ninebit::frame::Surface::rgba8)
     }
     fn shortcuts(&self) -> Shortcuts {
-        let plan = Plan::compile(&self.0, &PlanOptions::default());
-        plan.map_or(Shortcuts::NONE, |plan| shortcut::concerning(&plan))
-    }
-    fn scene(&self) -> Scene {
-        self.0.clone()
+        shortcut::concerning(self)
     }
 }
 
 /// Returns the subject of a scene: what the model draws counts as right. A scene without a target has none.
 pub fn of_scene(suite: String, name: String, scene: Scene) -> Option<Subject> {
     let width = scene.targets.first()?.width;
-    let drawing = Some(Box::new(Drawn(scene)) as Box<dyn Drawing>);
+    let drawing = Some(Box::new(scene) as Box<dyn Drawing>);
     Some(Subject { suite, name, truth: Truth::Model(width), text: Vec::new(), drawing })
 }

@@ -1,19 +1,25 @@
 //! The command `ninebit score`: pictures of another renderer against the chip's, and the rules that explain what differs.
 
 mod badge;
+mod card;
 mod chart;
 mod page;
 
 use super::*;
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use ninebit::shortcut::Shortcuts;
 use ninebit_files::output::write_below;
 use ninebit_files::pending::PendingFolder;
 use ninebit_handbook::{RULES, Rule};
 use ninebit_scene::image::Rgba;
-use ninebit_score::{Pictures, Run, Subject, captured, find, of_scene};
+use ninebit_scene::write::{self, WriteOptions};
+use ninebit_score::{Exhibit, Pictures, Run, Subject, captured, find, of_scene};
+use serde_json::json;
 
 use crate::replay::EntryKind;
 
@@ -32,7 +38,7 @@ pub(crate) struct Arguments {
     /// Score this suite only; may be given several times
     #[arg(long = "suite", value_name = "SUITE")]
     suites: Vec<String>,
-    /// Write a report into this folder: `index.html` with pictures, `score.json`, `badge.svg`; an earlier report is replaced
+    /// Write a report into this folder: `index.html` with pictures, `card.md` with its tables, `score.json`, `badge.svg`; an earlier report is replaced
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// Look for no causes, which takes a small part of the time
@@ -51,6 +57,9 @@ pub(crate) struct Arguments {
 
 /// The file of a report by which an earlier one is recognised.
 const DOCUMENT: &str = "score.json";
+
+/// The file that the inspector's pages of a report share.
+const SHARED: &str = "inspector.js";
 
 /// Most frames with pictures.
 const MOST_EXHIBITS: usize = 40;
@@ -85,10 +94,11 @@ fn scored(
     context: Context,
 ) -> Result<Vec<Run>, Failure> {
     let progress = Progress::new("scoring", context.color);
-    let (each, all) = (subjects.len() as u64, (subjects.len() * sets.len()) as u64);
     let one = |(n, set): (usize, &Pictures)| {
         let explain = n + 1 == sets.len() && !arguments.no_causes;
-        ninebit_score::run(subjects, set, explain, &|done| progress.report(n as u64 * each + done, all))
+        let before = (n * subjects.len()) as u64;
+        let rest = (sets.len() - 1 - n) as u64 * subjects.len() as u64;
+        ninebit_score::run(subjects, set, explain, &|done, all| progress.report(before + done, before + all + rest))
     };
     Ok(sets.iter().enumerate().map(one).collect::<Result<_, _>>()?)
 }
@@ -169,12 +179,22 @@ fn write(
 ) -> Result<(), Failure> {
     let Some(run) = runs.last() else { return Ok(()) };
     let exhibits = ninebit_score::exhibits(run, subjects, last, MOST_EXHIBITS);
-    let evidence = ninebit_score::evidence(run, subjects, &exhibits);
+    let evidence = ninebit_score::evidence(run, subjects);
     for exhibit in &exhibits {
         for (kind, picture) in &exhibit.pictures {
             let path = report.path().join("pictures").join(format!("{}-{kind}.png", exhibit.file));
             write_below(&path, &png(picture)?)?;
         }
+    }
+    let mut inspected = Vec::new();
+    for exhibit in &exhibits {
+        if let Some(page) = inspector(exhibit, run)? {
+            write_below(&report.path().join("scenes").join(format!("{}.html", exhibit.file)), page.as_bytes())?;
+            inspected.push(exhibit.frame);
+        }
+    }
+    if !inspected.is_empty() {
+        write_below(&report.path().join(SHARED), crate::page::shared(&super::inspect::common()).as_bytes())?;
     }
     let (against, option) = match arguments.captures {
         Some(_) => ("captures of the chip", "--captures"),
@@ -185,6 +205,7 @@ fn write(
         against,
         runs,
         exhibits: &exhibits,
+        inspected: &inspected,
         evidence: &evidence,
         command: &format!("ninebit score {option} DIR --results DIR"),
     });
@@ -192,8 +213,29 @@ fn write(
     let total = run.total();
     let badge = badge::badge("frames exact", &format!("{} of {}", total.exact, total.frames));
     write_below(&report.path().join("badge.svg"), badge.as_bytes())?;
+    write_below(&report.path().join("card.md"), card::card(runs).as_bytes())?;
     write_below(&report.path().join(DOCUMENT), format!("{:#}\n", ninebit_score::document(runs)).as_bytes())?;
     Ok(())
+}
+
+/// Returns the inspector's page of an exhibit, where it is compared with the cause of most of its pixels, or `None` if no scene is the frame.
+fn inspector(exhibit: &Exhibit, run: &Run) -> Result<Option<String>, Failure> {
+    let (Some((scene, cause, picture)), Some(causes)) = (&exhibit.scene, &run.causes) else { return Ok(None) };
+    // What a scene's text cannot say stays without a page.
+    let Ok(written) = write::scene(scene, &WriteOptions::default()) else { return Ok(None) };
+    let (frame, variant) = (&run.frames[exhibit.frame], causes.causes[*cause].variant.names());
+    let files: BTreeMap<String, String> =
+        written.files.iter().map(|(name, bytes)| (name.clone(), STANDARD.encode(bytes))).collect();
+    let data = json!({
+        "name": format!("{}.ron", frame.name),
+        "title": format!("{}/{}", frame.suite, frame.name),
+        "picture": null,
+        "text": written.text,
+        "files": files,
+        "chosen": {},
+        "against": { "name": format!("{variant}.png"), "picture": STANDARD.encode(png(picture)?) },
+    });
+    Ok(Some(crate::page::page_beside(&frame.name, &data, &format!("../{SHARED}"))))
 }
 
 fn png(picture: &Rgba) -> Result<Vec<u8>, Failure> {

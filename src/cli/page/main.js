@@ -25,6 +25,9 @@ class Page {
 
   async begin() {
     this.apply(await this.address.read());
+    // A page of a report compares with another renderer's way from the start.
+    const { against } = this.data;
+    if (against) this.dropped(against.name, bytesOf(against.picture));
   }
 
   wire() {

@@ -233,11 +233,11 @@ impl TriangleContext<'_> {
         for (n, register) in UNITS.into_iter().enumerate() {
             if self.draw.unbound[n] != 0 {
                 // TEX-16.
-                registers.load(register, [L::ZERO, L::ZERO, L::ZERO, L::ONE]);
+                registers.load(register, self.draw.unbound_color.map(L::byte));
                 if O::ON {
                     for channel in (0..4).filter(|c| self.draw.unbound[n] >> c & 1 != 0) {
                         let name = format!("texture{n}.{}", channel_name(channel));
-                        let value = if channel == 3 { 255_u8 } else { 0 };
+                        let value = self.draw.unbound_color[channel];
                         let block = format!("texture unit {n}");
                         let ideal = Some(f64::from(value));
                         observer.step(Step::given(&block, "TEX-16", name, value).per(255).ideal(ideal));
@@ -383,7 +383,8 @@ impl TriangleContext<'_> {
                 blend::run(state, draw.blended, constant, &truncated, &destination, observer)
             }
         };
-        let word = surface::pack(draw.surface, channels.map(|c| c.decision().clamp(0, 255) as u8));
+        let bytes = channels.map(|channel| channel.decision().clamp(0, 255) as u8);
+        let word = surface::pack(draw.surface, observer.observe_store(draw.surface, bytes));
         let word = surface::masked(fragment.stored, word, draw.write_mask);
         if draw.write_mask != 0 {
             observer.count(Work::BytesWritten, u64::from(draw.surface.bytes()));

@@ -150,6 +150,8 @@ pub struct PlannedDraw {
     pub shader: Option<PlannedShader>,
     /// Channels that are read of each unit without an operation or a texture, as bits R, G, B, A (TEX-16).
     pub unbound: [u8; TEXTURE_UNITS],
+    /// R, G, B, A of those units.
+    pub unbound_color: [u8; 4],
     /// Whether SPARE0's initial alpha is read (CMB-13).
     pub spare0_alpha: bool,
     /// Registers that are read before anything writes them (CMB-13), as `bits`.
@@ -472,6 +474,7 @@ fn plan_draw(
         units,
         shader,
         unbound: std::array::from_fn(|n| if idle(n) { liveness.units[n] } else { 0 }),
+        unbound_color: [0, 0, 0, 255],
         spare0_alpha: liveness.spare0_alpha,
         undefined: liveness.undefined,
         stages: liveness.stages,
@@ -535,6 +538,7 @@ fn plan_shader(draw: &Draw, units: &[PlannedUnit], liveness: &Liveness) -> Optio
         unit: units.iter().position(|unit| unit.index == index),
         live: liveness.units[index],
         dots: liveness.dots[index],
+        unit_normals: false,
         lights_alpha: false,
         signed_luminance: false,
     });

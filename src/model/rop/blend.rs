@@ -181,7 +181,10 @@ pub fn run<L: Lane, O: Observer>(
 #[inline]
 pub fn alpha_test<L: Lane, O: Observer>(test: &AlphaTest, alpha: L, observer: &mut O) -> bool {
     let passes = |alpha: i32| test.function.passes(i64::from(alpha.clamp(0, 255)), i64::from(test.reference));
-    let passed = passes(alpha.decision());
+    let passed = match observer.observe_alpha(alpha) {
+        Some(fine) => test.function.passes(fine, i64::from(test.reference) << 16),
+        None => passes(alpha.decision()),
+    };
     observer.decided(Decision::AlphaTest, i64::from(passed), || i64::from(passes(alpha.ideal_decision())));
     if O::ON {
         let inputs =

@@ -23,6 +23,16 @@ pub(crate) fn dropped_bits(format: SurfaceFormat) -> [u32; 3] {
     }
 }
 
+/// Returns bytes of which the surface keeps the values that are nearest to R, G and B, as renderers do that do not cut.
+pub(crate) fn rounded(format: SurfaceFormat, bytes: [u8; 4]) -> [u8; 4] {
+    let mut rounded = bytes;
+    for (byte, dropped) in rounded.iter_mut().zip(dropped_bits(format)) {
+        let most = 255 >> dropped;
+        *byte = (((u32::from(*byte) * most + 127) / 255) << dropped) as u8;
+    }
+    rounded
+}
+
 /// Returns whether the surface stores alpha.
 fn stores_alpha(format: SurfaceFormat) -> bool {
     matches!(format, SurfaceFormat::A8R8G8B8 | SurfaceFormat::X1A7R8G8B8Z | SurfaceFormat::X1A7R8G8B8O)

@@ -1,6 +1,6 @@
 //! Draws a plan with shortcuts.
 
-use super::reals::Told;
+use super::reals::RealsRecorder;
 use super::{Shortcut, Shortcuts};
 use crate::engine::pixel::{DepthStencil, Fragment};
 use crate::engine::{self, PixelTrace, RenderOptions, TextureWords, TraceError, Tracer, walk};
@@ -10,21 +10,29 @@ use crate::plan::{Plan, PlannedDraw};
 use crate::raster::ideal::Outline;
 use crate::raster::stroke::Figure;
 
+/// One of so many pixels is few: the scalar engine draws them sooner than the fast one draws all.
+const FEW: usize = 32;
+
 /// The pixels of the first target that are wanted, row by row; others are not drawn. `None` draws all.
 pub type Mask<'a> = Option<&'a [bool]>;
 
 /// Draws a plan, which has these shortcuts already, on frames that are cleared or hold what was there before.
 ///
-/// Where no shortcut needs the scalar engine, the engine of `options` draws all pixels. Otherwise the scalar one draws those that are wanted.
+/// Where no shortcut needs the scalar engine, and many pixels are wanted, the engine of `options` draws all. Otherwise the scalar one draws those
+/// that are wanted.
 pub fn render(plan: &Plan, shortcuts: Shortcuts, options: &RenderOptions, frames: &mut Frames, mask: Mask<'_>) {
-    if !shortcuts.need_scalar() {
-        engine::Renderer::new(plan, options).redraw(frames);
-        return;
-    }
     // A draw that reads the first target may read any of its pixels.
     let is_read = plan.textures.iter().any(|texture| texture.image.target() == Some(0));
     let mask = mask.filter(|_| !is_read);
-    if shortcuts.lead() {
+    let are_few = |mask: &[bool]| mask.iter().filter(|wanted| **wanted).count() * FEW < mask.len();
+    if !shortcuts.need_scalar() {
+        match mask.filter(|mask| are_few(mask)) {
+            Some(mask) => draw_all::<i32>(plan, shortcuts, frames, Some(mask)),
+            None => {
+                engine::Renderer::new(plan, options).redraw(frames);
+            }
+        }
+    } else if shortcuts.lead() {
         draw_all::<Paired<f32>>(plan, shortcuts, frames, mask);
     } else {
         draw_all::<Paired>(plan, shortcuts, frames, mask);
@@ -42,11 +50,11 @@ pub fn trace(plan: &Plan, shortcuts: Shortcuts, pixel: (u32, u32), fragments: u6
         draws.push(draw);
         Ok::<(), std::convert::Infallible>(())
     };
-    let told = || Told { reals: shortcuts.reals(), ..Told::default() };
+    let observer = || RealsRecorder { reals: shortcuts.reals(), ..RealsRecorder::default() };
     let Ok(end) = if shortcuts.lead() {
-        tracer.run_with::<Paired<f32>, _, _>(told, |told| told.recorder.steps, keep)
+        tracer.run_with::<Paired<f32>, _, _>(observer, |observer| observer.recorder.steps, keep)
     } else {
-        tracer.run_with::<Paired, _, _>(told, |told| told.recorder.steps, keep)
+        tracer.run_with::<Paired, _, _>(observer, |observer| observer.recorder.steps, keep)
     };
     let (cleared, left_out) = (tracer.cleared(), tracer.left_out());
     let (target, (x, y)) = (tracer.target().name.clone(), pixel);

@@ -4,11 +4,13 @@
 //! serves to recognise what another renderer does. The rules stay one text. A shortcut changes the state of a [plan](crate::plan), as a
 //! renderer does that ignores a flag, or it keeps the [real numbers](Reals) of some rules where the definition has integers.
 
+mod depths;
 mod draw;
 mod reals;
 mod state;
 mod texels;
 
+pub use depths::shown_depth;
 pub use draw::{Mask, render, trace};
 pub use reals::Reals;
 
@@ -101,10 +103,16 @@ named! {
         ExactCoordinates = "exact-coordinates" => state(&["WGT-1", "INT-4", "TEX-5"], "takes texture coordinates without the chip's 24-bit weights"),
         /// RAS-1 without snapping.
         UnsnappedVertices = "unsnapped-vertices" => state(&["RAS-1", "WGT-1"], "interpolates from vertices that are not cut to sixteenths of a pixel, without the chip's 24-bit weights"),
-        /// DEP-3 to nearest.
-        ExactDepths = "exact-depths" => state(&["DEP-3", "DEP-1"], "rounds depths to nearest in place of cutting them"),
+        /// DEP-1 in floats.
+        FloatDepths = "float-depths" => state(&["DEP-1", "DEP-5"], "computes depths in single precision, whose steps are whole from 2^23 on"),
         /// DEP-3 with float depths as fractions.
-        FixedDepths = "fixed-depths" => state(&["DEP-3"], "stores float depths as fractions of the largest float"),
+        ScaledDepths = "scaled-depths" => state(&["DEP-3"], "stores float depths as fractions of 511.9375, read as halves, and of 10^30, read as 24 bits"),
+        /// DEP-3 with float depths as fractions, and words as halves.
+        HalfDepths = "half-depths" => state(&["DEP-3"], "stores float depths as fractions, and reads a cleared buffer of 16 bits as halves, where 0xFFFF is no number and counts as 0"),
+        /// DEP-3 with a 16-bit clear cut again.
+        CutDepths = "cut-depths" => state(&["DEP-3", "CLR-1"], "cuts the depth of a 16-bit clear after a division in floats, and a half where it is read"),
+        /// LIN-1 with one width.
+        ThinLines = "thin-lines" => state(&["LIN-1"], "draws lines of every width one pixel wide"),
         /// TEX-18 ignored.
         UnsignedChannels = "unsigned-channels" => state(&["TEX-18"], "ignores that channels of textures are signed"),
         /// TEX-3 without dither.
@@ -113,6 +121,10 @@ named! {
         CutBlocks = "cut-blocks" => state(&["TEX-2", "TEX-3"], "widens and mixes the colours of compressed blocks by divisions that are cut"),
         /// TEX-1 by shifts.
         ShiftedTexels = "shifted-texels" => state(&["TEX-1"], "widens channels of 5 and 6 bits by zeros"),
+        /// TEX-1 of Y16 as grey.
+        GreyY16 = "grey-y16" => state(&["TEX-1"], "takes Y16 for sixteen bits of grey"),
+        /// TEX-1 of R6G5B5 as signed.
+        SignedR6G5B5 = "signed-r6g5b5" => state(&["TEX-1", "TEX-18"], "takes R6G5B5 for a red over 63 and a signed green and blue"),
         /// ROP-3 as the plain equations.
         PlainSignedBlend = "plain-signed-blend" => state(&["ROP-3"], "takes signed blend equations for unsigned ones, with factors"),
         /// TSH-8 ignored.
@@ -123,10 +135,18 @@ named! {
         LuminanceOf254 = "luminance-of-254" => reals(&["TSH-8"], "takes the luminance of bump maps as a signed byte over 127, halved and moved to 0 to 1", &[Rule::Tsh8]),
         /// TSH-7 in 127ths.
         OffsetsOf127 = "offsets-of-127" => state(&["TSH-7"], "divides the offsets of bump maps by 127"),
+        /// TSH-3 as colours.
+        HemisphereAsColor = "hemisphere-as-color" => state(&["TSH-3"], "takes the two halves of a hemisphere for a colour of 0 to 1"),
+        /// TSH-5 without the constant eye.
+        NoConstantReflection = "no-constant-reflection" => state(&["TSH-5"], "leaves reflections by a constant eye out: they are transparent black"),
+        /// TSH-5 for unit normals.
+        UnitNormals = "unit-normals" => state(&["TSH-5"], "takes normals for unit vectors where it reflects"),
+        /// TEX-16 in white.
+        WhiteUnbound = "white-unbound" => state(&["TEX-16"], "reads a unit without a texture as white"),
         /// FOG-2, FOG-4 at vertices.
         VertexFog = "vertex-fog" => state(&["FOG-2", "FOG-4"], "computes fog factors at vertices, and interpolates them"),
         /// FOG-4 with p0 outside the exponent.
-        BiasOutside = "bias-outside" => state(&["FOG-4", "FOG-2"], "adds the bias of exponential fog to the power, at vertices, and ignores `Abs`"),
+        BiasOutside = "bias-outside" => state(&["FOG-4", "FOG-2"], "computes fog factors at vertices, with the bias outside of the power and the magnitude taken last, and limits them at pixels"),
         /// WGT-1 with perspective always.
         AlwaysPerspective = "always-perspective" => state(&["WGT-1"], "corrects perspective where a draw turns it off"),
         /// Targets that textures read are black.
@@ -137,6 +157,12 @@ named! {
         EachProduct = "each-product" => state(&["CMB-7", "CMB-8"], "rounds each product before the sum"),
         /// CMB-9 at full width.
         LateRounding = "late-rounding" => state(&["CMB-9"], "rounds after bias and scale"),
+        /// CMB-10 by a bit.
+        MuxByBit = "mux-by-bit" => state(&["CMB-10"], "selects by bit 7 of a negative alpha"),
+        /// ROP-1 in floats.
+        FloatAlphaTest = "float-alpha-test" => reals(&["ROP-1"], "tests an alpha that is not rounded", &COMBINERS),
+        /// ROP-5 to nearest.
+        RoundedStores = "rounded-stores" => state(&["ROP-5"], "rounds to the nearest of the values that a 16-bit surface holds"),
         /// NUM-3 with a symmetric range.
         SymmetricRegisters = "symmetric-registers" => state(&["NUM-3"], "limits registers to -1"),
     }
@@ -205,7 +231,12 @@ impl Shortcuts {
         for shortcut in self.iter() {
             shortcut.reading().reals.iter().for_each(|rule| reals.keep(*rule));
         }
-        reals.depths = self.contains(Shortcut::ExactDepths);
+        reals.depths = self.contains(Shortcut::FloatDepths);
+        reals.alpha = self.contains(Shortcut::FloatAlphaTest);
+        reals.stores = self.contains(Shortcut::RoundedStores);
+        if depths::scales(self) {
+            reals.least_depth = depths::LEAST;
+        }
         reals
     }
 
@@ -216,7 +247,8 @@ impl Shortcuts {
 
     /// Returns whether the scalar engine has to draw, because something stays a real number or is computed otherwise.
     pub fn need_scalar(self) -> bool {
-        self.lead() || self.contains(Shortcut::LuminanceOfAlpha) || self.reals() != Reals::default()
+        const SCALAR: [Shortcut; 3] = [Shortcut::LuminanceOfAlpha, Shortcut::UnitNormals, Shortcut::WhiteUnbound];
+        self.lead() || SCALAR.iter().any(|shortcut| self.contains(*shortcut)) || self.reals() != Reals::default()
     }
 }
 

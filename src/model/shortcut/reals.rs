@@ -1,6 +1,8 @@
-//! [`Reals`], the observer that keeps the real numbers of some rules, and [`Told`], which records their steps as well.
+//! [`Reals`], the observer that keeps the real numbers of some rules, and [`RealsRecorder`], which records their steps as well.
 
 use crate::number::Lane;
+use crate::rop::surface;
+use crate::state::SurfaceFormat;
 use crate::trace::{Observer, Recorder, Rule, Step};
 
 /// An observer under which some rules yield the real numbers of a paired lane, and all others the integers of the definition. It makes
@@ -9,8 +11,14 @@ use crate::trace::{Observer, Recorder, Rule, Step};
 pub struct Reals {
     /// The rules, by their number.
     rules: u64,
-    /// Whether depths are rounded to nearest.
+    /// Whether depths are computed in single precision.
     pub(super) depths: bool,
+    /// The least depth word above 0; smaller ones become 0.
+    pub(super) least_depth: u32,
+    /// Whether the alpha test compares real numbers.
+    pub(super) alpha: bool,
+    /// Whether surfaces of 16 bits round to nearest.
+    pub(super) stores: bool,
 }
 
 impl Reals {
@@ -42,20 +50,29 @@ impl Observer for Reals {
         L::settled_weight(weight, self.has(rule))
     }
     #[inline]
-    #[allow(clippy::float_arithmetic, reason = "another renderer's depths")]
     fn observe_depth(&mut self, word: u32, largest: u32, ideal: impl FnOnce() -> f64) -> u32 {
-        if self.depths { ((ideal() + 0.5).floor() as u32).min(largest) } else { word }
+        let word = if self.depths { (ideal() as f32 as u32).min(largest) } else { word };
+        if word < self.least_depth { 0 } else { word }
+    }
+    #[inline]
+    #[allow(clippy::float_arithmetic, reason = "another renderer's alpha test")]
+    fn observe_alpha<L: Lane>(&mut self, alpha: L) -> Option<i64> {
+        self.alpha.then(|| (alpha.observe().1.unwrap_or_default() * 65536.0) as i64)
+    }
+    #[inline]
+    fn observe_store(&mut self, format: SurfaceFormat, bytes: [u8; 4]) -> [u8; 4] {
+        if self.stores { surface::rounded(format, bytes) } else { bytes }
     }
 }
 
 /// [`Reals`] and a recorder of the steps.
 #[derive(Debug, Default)]
-pub(super) struct Told {
+pub(super) struct RealsRecorder {
     pub(super) reals: Reals,
     pub(super) recorder: Recorder,
 }
 
-impl Observer for Told {
+impl Observer for RealsRecorder {
     const ON: bool = true;
     const MEASURES: bool = true;
     fn step(&mut self, step: Step) {
@@ -72,5 +89,11 @@ impl Observer for Told {
     }
     fn observe_depth(&mut self, word: u32, largest: u32, ideal: impl FnOnce() -> f64) -> u32 {
         self.reals.observe_depth(word, largest, ideal)
+    }
+    fn observe_alpha<L: Lane>(&mut self, alpha: L) -> Option<i64> {
+        self.reals.observe_alpha(alpha)
+    }
+    fn observe_store(&mut self, format: SurfaceFormat, bytes: [u8; 4]) -> [u8; 4] {
+        self.reals.observe_store(format, bytes)
     }
 }

@@ -1,13 +1,15 @@
 //! The state of a plan under shortcuts, and which shortcuts can change its frames.
 #![allow(clippy::float_arithmetic, reason = "vertices and matrices as another renderer prepares them")]
 
-use super::{Shortcut, Shortcuts, texels};
+use super::{Shortcut, Shortcuts, depths, texels};
 use crate::plan::{Plan, PlannedDraw};
 use crate::raster::ideal;
+use crate::rop::surface;
 use crate::state::{
-    BlendEquation, DepthFormat, DotRounding, ExpandCentre, Filter, FogFunction, FogMode, OutputRounding, RegisterFloor,
-    ShaderOperation, SumRounding, VertexDepths,
+    BlendEquation, DepthFormat, DotMapping, DotRounding, ExpandCentre, Filter, FogFunction, FogMode, LineRasterization,
+    Lines, MuxNegative, OutputRounding, RegisterFloor, ShaderOperation, SumRounding,
 };
+use crate::texture::stage::PlannedShaderStage;
 
 /// Changes a plan.
 pub(super) fn change(mut plan: Plan, shortcuts: Shortcuts) -> Plan {
@@ -24,6 +26,9 @@ pub(super) fn change(mut plan: Plan, shortcuts: Shortcuts) -> Plan {
     }
     if has(Shortcut::SymmetricRegisters) {
         policies.register_floor = RegisterFloor::Symmetric;
+    }
+    if has(Shortcut::MuxByBit) {
+        policies.mux_negative = MuxNegative::Bit7;
     }
     texels::convert(&mut plan, shortcuts);
     if has(Shortcut::BlackTargets) {
@@ -43,98 +48,102 @@ pub(super) fn change(mut plan: Plan, shortcuts: Shortcuts) -> Plan {
             };
         }
         draw.perspective |= has(Shortcut::AlwaysPerspective);
+        if has(Shortcut::ThinLines) {
+            draw.assembly.lines = THIN;
+        }
+        if has(Shortcut::WhiteUnbound) {
+            draw.unbound_color = [255; 4];
+        }
         change_shader(draw, shortcuts);
         if has(Shortcut::VertexFog) || has(Shortcut::BiasOutside) {
             fog_at_vertices(draw, has(Shortcut::BiasOutside));
         }
     }
-    if has(Shortcut::FixedDepths) {
-        fix_depths(&mut plan);
-    }
+    depths::change(&mut plan, shortcuts);
     plan
 }
 
-/// Changes the bump maps of a draw.
+/// A line of one pixel.
+const THIN: Lines = Lines { width: 8, rasterization: LineRasterization::Bresenham };
+
+/// Changes the texture shader of a draw.
 fn change_shader(draw: &mut PlannedDraw, shortcuts: Shortcuts) {
     let Some(shader) = &mut draw.shader else { return };
+    let has = |shortcut| shortcuts.contains(shortcut);
     for stage in &mut shader.stages {
-        let ShaderOperation::BumpEnvironment { matrix, luminance } = &mut stage.state.operation else { continue };
-        if shortcuts.contains(Shortcut::NoLuminance) {
-            *luminance = None;
+        if has(Shortcut::HemisphereAsColor) && stage.state.mapping == DotMapping::HiloHemisphere {
+            stage.state.mapping = DotMapping::ZeroToOne;
         }
-        if shortcuts.contains(Shortcut::OffsetsOf127) {
-            *matrix = matrix.map(|entry| entry * 128.0 / 127.0);
+        stage.unit_normals = has(Shortcut::UnitNormals);
+        match &mut stage.state.operation {
+            ShaderOperation::BumpEnvironment { matrix, luminance } => {
+                if has(Shortcut::NoLuminance) {
+                    *luminance = None;
+                }
+                if has(Shortcut::OffsetsOf127) {
+                    *matrix = matrix.map(|entry| entry * 128.0 / 127.0);
+                }
+                stage.signed_luminance = has(Shortcut::LuminanceOf254);
+                stage.lights_alpha = has(Shortcut::LuminanceOfAlpha);
+            }
+            operation @ ShaderOperation::DotReflectConstantEye { .. } if has(Shortcut::NoConstantReflection) => {
+                // Its colour is 0 (TSH-4).
+                *operation = ShaderOperation::DotProduct;
+            }
+            _ => {}
         }
-        stage.signed_luminance = shortcuts.contains(Shortcut::LuminanceOf254);
-        stage.lights_alpha = shortcuts.contains(Shortcut::LuminanceOfAlpha);
     }
 }
 
-/// Replaces fog functions by the factors of vertices. With `outside` an exponential has its bias outside the power, and magnitudes are not taken.
+/// Replaces fog functions by the factors of vertices. With `outside` an exponential has its bias outside of the power, the magnitude is the
+/// factor's, and factors are limited where they are used.
 fn fog_at_vertices(draw: &mut PlannedDraw, outside: bool) {
     let Some(function) = draw.fog.function.take() else { return };
     let vertices = &draw.assembly.vertices;
     let known = vertices.iter().map(|vertex| (vertex.fog, vertex.fog_coordinate));
-    let factors: Vec<f32> = known.map(|(fog, coordinate)| factor(&function, fog, coordinate, outside)).collect();
-    draw.assembly.vertices.update(|n, vertex| vertex.fog = factors[n]);
+    if !outside {
+        let factor = |(fog, d)| (ideal::fog(&Some(function), [1.0, 0.0, 0.0], [fog; 3], [d; 3]) / 255.0) as f32;
+        let factors: Vec<f32> = known.map(factor).collect();
+        draw.assembly.vertices.update(|n, vertex| vertex.fog = factors[n]);
+        return;
+    }
+    let factors: Vec<f32> = known.map(|(fog, coordinate)| unlimited_factor(&function, fog, coordinate)).collect();
+    // Linear fog of what vertices pass is that less 1, limited at pixels.
+    draw.fog.function = Some(FogFunction { mode: FogMode::Linear, per_vertex: true, ..function });
+    draw.assembly.vertices.update(|n, vertex| (vertex.fog, vertex.fog_coordinate) = (factors[n] + 1.0, None));
 }
 
-fn factor(function: &FogFunction, passed: f32, coordinate: Option<f32>, outside: bool) -> f32 {
-    let plain = || (ideal::fog(&Some(*function), [1.0, 0.0, 0.0], [passed; 3], [coordinate; 3]) / 255.0) as f32;
-    if !outside {
-        return plain();
-    }
+/// Returns the factor of a vertex with the bias outside of the power, not limited but to finite numbers.
+fn unlimited_factor(function: &FogFunction, passed: f32, coordinate: Option<f32>) -> f32 {
     // d, from e = p0 + p1 d where the vertices pass only that.
     let (p0, p1) = (f64::from(function.p0), f64::from(function.p1));
     let d = match coordinate {
         Some(d) => f64::from(d),
         None if !function.takes_e() => f64::from(passed),
-        None if p1 == 0.0 => return plain(),
+        None if p1 == 0.0 => 0.0,
         None => (f64::from(passed) - p0) / p1,
     };
     let factor = match function.mode {
         FogMode::Linear | FogMode::LinearAbs => p0 + p1 * d - 1.0,
-        FogMode::Exp | FogMode::ExpAbs => p0 + ideal::power_of_two(16.0 * p1 * d) - 1.5,
-        FogMode::Exp2 | FogMode::Exp2Abs => p0 + ideal::power_of_two(-32.0 * (p1 * d) * (p1 * d)) - 1.5,
+        FogMode::Exp | FogMode::ExpAbs => p0 + power_of_two(16.0 * p1 * d) - 1.5,
+        FogMode::Exp2 | FogMode::Exp2Abs => p0 + power_of_two(-32.0 * (p1 * d) * (p1 * d)) - 1.5,
     };
-    if factor.is_nan() { plain() } else { factor.clamp(0.0, 1.0) as f32 }
-}
-
-/// Stores float depths as integers: fractions of the largest number of the format.
-fn fix_depths(plan: &mut Plan) {
-    let largest = |format: DepthFormat| f64::from(depth_of_word(format, format.largest()));
-    let fixed = |format: DepthFormat| if format == DepthFormat::Z16F { DepthFormat::Z16 } else { DepthFormat::Z24S8 };
-    for draw in plan.draws.iter_mut().filter(|draw| draw.depth_test.is_some() && draw.depth_format.is_float()) {
-        let (format, Some(test)) = (draw.depth_format, &mut draw.depth_test) else { continue };
-        let factor = f64::from(format.largest()) / largest(format);
-        let scaled = |z: f32| (f64::from(z) * factor) as f32;
-        draw.assembly.vertices.map_positions(|[x, y, z, w]| [x, y, scaled(z), w]);
-        test.vertex_depths = VertexDepths::Steps;
-        if let Some(range) = &mut test.range {
-            (range.lowest, range.highest) = (scaled(range.lowest), scaled(range.highest));
-        }
-        draw.depth_format = fixed(format);
-    }
-    for depth in plan.targets.iter_mut().filter_map(|target| target.depth.as_mut()) {
-        if depth.format.is_float() {
-            let (format, steps) = (depth.format, f64::from(depth.format.largest()));
-            let part = f64::from(depth_of_word(format, depth.clear)) / largest(format);
-            depth.clear = (part * steps).clamp(0.0, steps) as u32;
-            depth.format = fixed(format);
-        }
+    let is_absolute = matches!(function.mode, FogMode::LinearAbs | FogMode::ExpAbs | FogMode::Exp2Abs);
+    let of_none = f32::from(matches!(function.mode, FogMode::Linear | FogMode::LinearAbs | FogMode::Exp));
+    match if is_absolute { factor.abs() } else { factor } {
+        _ if d.is_infinite() => of_none,
+        factor if factor.is_nan() => of_none,
+        factor => (factor as f32).clamp(-LARGEST_FACTOR, LARGEST_FACTOR),
     }
 }
 
-/// DEP-3: returns the number that a word of a float format stands for. Words beyond the largest finite number are that.
-fn depth_of_word(format: DepthFormat, word: u32) -> f32 {
-    if word == 0 {
-        return 0.0;
-    }
-    let number = match format {
-        DepthFormat::Z16F => f32::from_bits((word << 11).wrapping_add(0x3c00_0000)),
-        _ => f32::from_bits(word << 7),
-    };
-    if number.is_finite() { number } else { f32::MAX }
+/// Limit of factors: so large that only their sign counts.
+const LARGEST_FACTOR: f32 = 1e30;
+
+/// Returns 2^x as [`ideal::power_of_two`] does, for every x.
+fn power_of_two(x: f64) -> f64 {
+    let whole = x.floor().clamp(-1000.0, 1000.0);
+    ideal::power_of_two((x - whole).clamp(0.0, 1.0)) * f64::from_bits(((1023.0 + whole) as u64) << 52)
 }
 
 /// Returns whether a shortcut can change a frame of a plan.
@@ -150,6 +159,9 @@ pub(super) fn concerns(plan: &Plan, shortcut: Shortcut) -> bool {
             &|operation| matches!(operation, ShaderOperation::BumpEnvironment { luminance, .. } if !with || luminance.is_some()),
         )
     };
+    let depths = |test: &dyn Fn(DepthFormat) -> bool| {
+        plan.targets.iter().filter_map(|target| target.depth).any(|depth| test(depth.format))
+    };
     let has_depths = || any(&|draw| draw.depth_test.is_some());
     let signed = || units(&|unit| unit.state.signed != [false; 4]);
     let fog = || any(&|draw| draw.fog_channels & 8 != 0 && draw.fog.enabled);
@@ -160,23 +172,41 @@ pub(super) fn concerns(plan: &Plan, shortcut: Shortcut) -> bool {
         }
         Shortcut::FloatBlocks => units(&|unit| unit.format.is_compressed()),
         Shortcut::FloatTexels => units(&|unit| texels::converts(Shortcut::ShiftedTexels, unit.format)),
-        Shortcut::PlainBlocks | Shortcut::CutBlocks | Shortcut::ShiftedTexels => {
-            units(&|unit| texels::converts(shortcut, unit.format))
-        }
+        Shortcut::PlainBlocks
+        | Shortcut::CutBlocks
+        | Shortcut::ShiftedTexels
+        | Shortcut::GreyY16
+        | Shortcut::SignedR6G5B5 => units(&|unit| texels::converts(shortcut, unit.format)),
         Shortcut::FloatSigned | Shortcut::UnsignedChannels => signed(),
+        Shortcut::FloatAlphaTest => any(&|draw| draw.alpha_test.is_some()),
+        Shortcut::RoundedStores => any(&|draw| surface::dropped_bits(draw.surface) != [0; 3]),
         Shortcut::FloatCombiners => any(&|draw| !draw.stages.is_empty() || draw.blend.is_some()),
         Shortcut::FloatFog => fog(),
         Shortcut::FloatLuminance | Shortcut::LuminanceOf254 | Shortcut::NoLuminance | Shortcut::LuminanceOfAlpha => {
             bumps(true)
         }
         Shortcut::OffsetsOf127 => bumps(false),
+        Shortcut::HemisphereAsColor => any(&|draw| {
+            let hemisphere = |stage: &PlannedShaderStage| stage.state.mapping == DotMapping::HiloHemisphere;
+            draw.shader.as_ref().is_some_and(|s| s.stages.iter().any(|stage| stage.runs() && hemisphere(stage)))
+        }),
+        Shortcut::NoConstantReflection => {
+            stages(&|operation| matches!(operation, ShaderOperation::DotReflectConstantEye { .. }))
+        }
+        Shortcut::UnitNormals => stages(&|operation| {
+            matches!(operation, ShaderOperation::DotReflectSpecular | ShaderOperation::DotReflectConstantEye { .. })
+        }),
+        Shortcut::WhiteUnbound => any(&|draw| draw.unbound != [0; 4]),
         Shortcut::FloatPassThrough => stages(&|operation| matches!(operation, ShaderOperation::PassThrough)),
         Shortcut::FloatShader => any(&|_| true),
         Shortcut::FloatBlend => any(&|draw| draw.blend.is_some()),
         Shortcut::ExactCoordinates => units(&|_| true),
         Shortcut::UnsnappedVertices => any(&|_| true),
-        Shortcut::ExactDepths => has_depths(),
-        Shortcut::FixedDepths => any(&|draw| draw.depth_test.is_some() && draw.depth_format.is_float()),
+        Shortcut::FloatDepths => has_depths(),
+        Shortcut::ScaledDepths => depths(&|format| format.is_float()),
+        Shortcut::HalfDepths => depths(&|format| format == DepthFormat::Z16F),
+        Shortcut::CutDepths => depths(&|format| format.bits() == 16),
+        Shortcut::ThinLines => any(&|draw| draw.assembly.lines != THIN),
         Shortcut::PlainSignedBlend => any(&|draw| {
             let equation = draw.blend.map(|blend| blend.equation);
             matches!(equation, Some(BlendEquation::SignedAdd | BlendEquation::SignedReverseSubtract))
@@ -184,8 +214,10 @@ pub(super) fn concerns(plan: &Plan, shortcut: Shortcut) -> bool {
         Shortcut::AlwaysPerspective => any(&|draw| !draw.perspective),
         Shortcut::BlackTargets => any(&|draw| plan.reads_target(draw)),
         Shortcut::VertexFog | Shortcut::BiasOutside => fog() && any(&|draw| draw.fog.function.is_some()),
-        Shortcut::LiteralExpand | Shortcut::EachProduct | Shortcut::LateRounding | Shortcut::SymmetricRegisters => {
-            any(&|draw| !draw.stages.is_empty())
-        }
+        Shortcut::LiteralExpand
+        | Shortcut::EachProduct
+        | Shortcut::LateRounding
+        | Shortcut::MuxByBit
+        | Shortcut::SymmetricRegisters => any(&|draw| !draw.stages.is_empty()),
     }
 }

@@ -1,8 +1,8 @@
 //! Textures whose texels another renderer has converted to bytes beforehand.
 
 use super::{Shortcut, Shortcuts};
-use crate::plan::Plan;
-use crate::state::{Level, Texels, Texture, TextureFormat, TextureImage, TextureKind};
+use crate::plan::{Plan, PlannedDraw};
+use crate::state::{Level, ShaderOperation, Texels, Texture, TextureFormat, TextureImage, TextureKind};
 use crate::texture::compressed;
 use crate::texture::format;
 
@@ -12,6 +12,8 @@ pub(super) fn converts(shortcut: Shortcut, format: TextureFormat) -> bool {
         Shortcut::PlainBlocks => format == TextureFormat::Dxt1,
         Shortcut::CutBlocks => format.is_compressed(),
         Shortcut::ShiftedTexels => format::is_narrow(format),
+        Shortcut::GreyY16 => format == TextureFormat::Y16,
+        Shortcut::SignedR6G5B5 => format == TextureFormat::R6G5B5,
         _ => false,
     }
 }
@@ -22,7 +24,14 @@ pub(super) fn convert(plan: &mut Plan, shortcuts: Shortcuts) {
         let Texture { format, kind, image, .. } = &plan.textures[index];
         let Some(shortcut) = shortcuts.iter().find(|shortcut| converts(*shortcut, *format)) else { continue };
         let TextureImage::Texels(texels) = image else { continue };
-        let Some(words) = converted(texels, *format, *kind, shortcut) else { continue };
+        let is_offset = plan.draws.iter().any(|draw| offsets(draw, index));
+        let of_texel = |word: u32| match shortcut {
+            Shortcut::GreyY16 => grey(word),
+            Shortcut::SignedR6G5B5 if is_offset => signed(word),
+            Shortcut::SignedR6G5B5 => signed(word).map(|byte| (255 * i32::from(byte as i8).max(0) / 127) as u8),
+            _ => format::shifted(*format, word),
+        };
+        let Some(words) = converted(texels, *format, *kind, (shortcut, &of_texel)) else { continue };
         let image = TextureImage::Texels(Texels { words: words.into(), ..texels.clone() });
         let texture = &mut plan.textures[index];
         (texture.format, texture.image) = (TextureFormat::A8R8G8B8, image);
@@ -39,6 +48,27 @@ pub(super) fn convert(plan: &mut Plan, shortcuts: Shortcuts) {
     }
 }
 
+/// Returns whether a texture displaces the coordinates of another unit in a draw.
+fn offsets(draw: &PlannedDraw, texture: usize) -> bool {
+    let units = || draw.units.iter().filter(|unit| unit.state.texture == texture);
+    draw.shader.iter().flat_map(|shader| &shader.stages).any(|stage| {
+        let displaces = matches!(stage.state.operation, ShaderOperation::BumpEnvironment { .. });
+        displaces && units().any(|unit| unit.index == stage.state.previous)
+    })
+}
+
+/// Returns the bytes of a texel of Y16 as grey.
+fn grey(word: u32) -> [u8; 4] {
+    let grey = (((word & 0xffff) * 255 + 32767) / 65535) as u8;
+    [grey, grey, grey, 255]
+}
+
+/// Returns the bytes of a texel of R6G5B5 as two's complement numbers, of which 127 is 1.0.
+fn signed(word: u32) -> [u8; 4] {
+    let five = |shift: u32| ((word >> shift & 31 ^ 16) * 255 / 31).wrapping_sub(128) as u8;
+    [((word >> 10 & 63) * 127 / 63) as u8, five(5), five(0), 127]
+}
+
 /// Replaces textures that read the colours of a render target by zeros.
 pub(super) fn blacken(plan: &mut Plan) {
     for index in 0..plan.textures.len() {
@@ -53,7 +83,12 @@ pub(super) fn blacken(plan: &mut Plan) {
 }
 
 /// Returns the words of all images in A8R8G8B8, or `None` if there are border texels.
-fn converted(texels: &Texels, format: TextureFormat, kind: TextureKind, shortcut: Shortcut) -> Option<Vec<u32>> {
+fn converted(
+    texels: &Texels,
+    format: TextureFormat,
+    kind: TextureKind,
+    (shortcut, of_texel): (Shortcut, &dyn Fn(u32) -> [u8; 4]),
+) -> Option<Vec<u32>> {
     if texels.border {
         return None;
     }
@@ -71,7 +106,7 @@ fn converted(texels: &Texels, format: TextureFormat, kind: TextureKind, shortcut
                     compressed::decode_undithered(format, block, (x, y), shortcut == Shortcut::CutBlocks)
                 } else {
                     let word = *texels.words.get(first + (y * level.width + x) as usize)?;
-                    format::shifted(format, word)
+                    of_texel(word)
                 };
                 let [r, g, b, a] = bytes.map(u32::from);
                 words.push(a << 24 | r << 16 | g << 8 | b);
@@ -79,4 +114,16 @@ fn converted(texels: &Texels, format: TextureFormat, kind: TextureKind, shortcut
         }
     }
     Some(words)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texels_of_other_meanings() {
+        assert_eq!((grey(0), grey(0xffff), grey(0x8080)), ([0, 0, 0, 255], [255; 4], [128, 128, 128, 255]));
+        assert_eq!(signed(63 << 10 | 15 << 5 | 16), [127, 127, 128, 127]);
+        assert_eq!(signed(0), [0, 3, 3, 127]);
+    }
 }

@@ -269,9 +269,11 @@ impl<L: Lane> Chain<'_, L> {
             ShaderOperation::DotReflectSpecular | ShaderOperation::DotReflectConstantEye { .. } => {
                 let normal = self.normal(at, state, observer);
                 let (eye, real_eye) = self.eye(index, at.sample, observer);
-                let fixed = dot::reflect(normal.map(|d| d.fixed), eye);
+                let (short, long) = (normal.map(|d| d.fixed), normal.map(|d| d.real));
+                let unit = self.shader.stages[index].unit_normals;
+                let fixed = dot::reflect_about(short, if unit { 1.0 } else { dot::dot(short, short) }, eye);
                 observer.count(Work::Dots, dot::REFLECTION_OPERATIONS);
-                let reflected = || dot::reflect(normal.map(|d| d.real), real_eye);
+                let reflected = || dot::reflect_about(long, if unit { 1.0 } else { dot::dot(long, long) }, real_eye);
                 if O::ON {
                     let constant = matches!(operation, ShaderOperation::DotReflectConstantEye { .. });
                     report::reflection(index, normal, (eye, constant), &fixed, &reflected(), observer);

@@ -107,7 +107,13 @@ pub struct Reflection<N> {
 /// zero normal.
 #[inline(always)]
 pub fn reflect<N: Number>(normal: Vector<N>, eye: Vector<N>) -> Reflection<N> {
-    let (toward, square) = (dot(normal, eye), dot(normal, normal));
+    reflect_about(normal, dot(normal, normal), eye)
+}
+
+/// TSH-5: reflects the eye vector about a normal, of which `square` counts as the squared length.
+#[inline(always)]
+pub(crate) fn reflect_about<N: Number>(normal: Vector<N>, square: N, eye: Vector<N>) -> Reflection<N> {
+    let toward = dot(normal, eye);
     let scale = N::TWO * toward;
     let component = |n: usize| scale * normal[n] - square * eye[n];
     let vector = [component(0), component(1), component(2)];

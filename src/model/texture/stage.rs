@@ -32,6 +32,8 @@ pub struct PlannedShaderStage {
     pub live: u8,
     /// Whether its dot product is needed for sampling.
     pub dots: bool,
+    /// Whether normals count as unit vectors in a reflection, which TSH-5 does not assume.
+    pub unit_normals: bool,
     /// Whether a luminance multiplies alpha too, which TSH-8 does not.
     pub lights_alpha: bool,
     /// Whether the ideal's luminance is a signed byte, in 254ths from its least value, which TSH-8's is not.

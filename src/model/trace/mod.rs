@@ -10,6 +10,7 @@ pub use crate::number::Part;
 pub use rule::{Decision, Rule, Work};
 
 use crate::number::Lane;
+use crate::state::SurfaceFormat;
 
 /// Receives reports about a pixel.
 ///
@@ -55,6 +56,14 @@ pub trait Observer {
     /// Receives the depth that a test compares, of a buffer whose largest is given. Returns the depth to continue with.
     fn observe_depth(&mut self, word: u32, _largest: u32, _ideal: impl FnOnce() -> f64) -> u32 {
         word
+    }
+    /// Receives the alpha that a test compares. Returns it in 65536ths if it is not to be rounded.
+    fn observe_alpha<L: Lane>(&mut self, _alpha: L) -> Option<i64> {
+        None
+    }
+    /// Receives R, G, B, A as a surface is about to store them. Returns what it stores.
+    fn observe_store(&mut self, _format: SurfaceFormat, bytes: [u8; 4]) -> [u8; 4] {
+        bytes
     }
     /// Receives a decision. `ideal` returns what the ideal would have decided.
     fn decided(&mut self, _decision: Decision, _outcome: i64, _ideal: impl FnOnce() -> i64) {}

@@ -8,7 +8,7 @@ fn report(captures: &Path, results: &Path) -> Result<String, String> {
     let chip = find(captures).map_err(|error| error.to_string())?.pop().ok_or("there are no captures")?;
     let other = find(results).map_err(|error| error.to_string())?.pop().ok_or("there are no pictures")?;
     let subjects = captured(&chip.folder, &chip.files).map_err(|error| error.to_string())?;
-    let scored = run(&subjects, &other, true, &|_| {}).map_err(|error| error.to_string())?;
+    let scored = run(&subjects, &other, true, &|_, _| {}).map_err(|error| error.to_string())?;
     let total = scored.total();
     let mut text = format!("{} of {} frames are exact", total.exact, total.frames);
     for cause in scored.causes.iter().flat_map(|causes| &causes.causes) {

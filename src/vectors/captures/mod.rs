@@ -31,9 +31,12 @@ mod shader;
 mod shadow;
 mod space;
 mod stencil;
+mod table;
 mod texel_formats;
 mod texgen;
 mod transfers;
+
+pub use table::Open;
 
 use draws::*;
 use images::checker;
@@ -44,12 +47,14 @@ use ninebit::plan::{Plan, PlanError, PlanOptions};
 use ninebit::rop::surface;
 use ninebit::shortcut::{self, Mask, Shortcuts};
 use ninebit::state::*;
-use ninebit_data::{CAPTURED, FRAMES};
+use ninebit_data::CAPTURED;
 use ninebit_files::picture::hexadecimal;
 use sha2::{Digest, Sha256};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
+use table::Row;
 
 /// Width and height of every frame in pixels.
 pub const SIZE: (u32, u32) = (640, 480);
@@ -104,15 +109,6 @@ pub struct Frame {
     digest: &'static str,
     /// The known difference from the capture; `None` if the frame is exact.
     pub open: Option<Open>,
-}
-
-/// A known difference of a frame, and the rule that is not fully understood.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Open {
-    /// The rule's id.
-    pub rule: &'static str,
-    /// Number of pixels that differ.
-    pub pixels: u64,
 }
 
 impl fmt::Debug for Frame {
@@ -253,7 +249,7 @@ const SUITES: &[Suite] = &[
 pub fn frames(wanted: &[&str]) -> Result<Vec<Frame>, Unmatched> {
     let mut all = Vec::new();
     let mut unmatched = Vec::new();
-    let rows: Vec<_> = FRAMES.lines().filter(|line| !line.starts_with('#')).filter_map(row).collect();
+    let rows: Vec<Row> = table::rows().collect();
     for (suite, make) in SUITES.iter().filter(|(suite, _)| wanted.is_empty() || wanted.contains(suite)) {
         let mut drawn = Frames::default();
         make(&mut drawn);
@@ -290,31 +286,6 @@ pub fn sample(frames: Vec<Frame>, count: usize) -> Vec<Frame> {
     frames.into_iter().filter(is_taken).collect()
 }
 
-/// A row of the table of frames.
-struct Row {
-    suite: &'static str,
-    name: &'static str,
-    text: Vec<Rectangle>,
-    digest: &'static str,
-    open: Option<Open>,
-}
-
-fn row(line: &'static str) -> Option<Row> {
-    let mut fields = line.split('\t');
-    let (suite, name, text) = (fields.next()?, fields.next()?, fields.next()?);
-    let rectangle = |text: &str| {
-        let mut numbers = text.split(',').map(|number| number.parse().ok());
-        let mut number = || numbers.next()?;
-        Some(Rectangle { x: number()?, y: number()?, width: number()?, height: number()? })
-    };
-    let (text, digest) = (text.split(' ').filter_map(rectangle).collect(), fields.next()?);
-    let open = |rest: &'static str| {
-        let (rule, pixels) = rest.split_once(' ')?;
-        Some(Open { rule, pixels: pixels.parse().ok()? })
-    };
-    Some(Row { suite, name, text, digest, open: fields.next().and_then(open) })
-}
-
 impl Frame {
     /// Draws the frame. Returns R, G, B, A of every pixel, row by row from the top.
     ///
@@ -335,36 +306,15 @@ impl Frame {
         shortcuts: Shortcuts,
         mask: Mask<'_>,
     ) -> Result<Vec<[u8; 4]>, Vec<PlanError>> {
-        let plan = |scene: &Scene| planned(scene, policies).map(|plan| plan.with_shortcuts(shortcuts));
-        let draw = |plan: &Plan, frames: &mut Rendered, mask: Mask<'_>| {
-            shortcut::render(plan, shortcuts, options, frames, mask);
-        };
-        let Drawn { mut scene, before, view, shown } = (self.make)();
-        for (before, texture) in before.iter().zip(&mut scene.textures) {
-            let plan = plan(before)?;
-            let mut frames = cleared(&plan);
-            draw(&plan, &mut frames, None);
-            put_memory(&frames.surfaces[0], texture);
-        }
-        let main = plan(&scene)?;
-        let mut frames = cleared(&main);
-        draw(&main, &mut frames, mask.filter(|_| view.is_none()));
-        let mut words = std::mem::take(&mut frames.surfaces[0].words);
-        if let Some(view) = view {
-            let view = plan(&view)?;
-            let mut frames = cleared(&view);
-            frames.surfaces[0].words = seen_as(&words, view.targets()[0].format);
-            draw(&view, &mut frames, None);
-            put_back(&frames.surfaces[0], &mut words);
-        }
-        if shown == Shown::DepthStencil {
-            let surface = &frames.surfaces[0];
-            if scene.targets[0].depth.is_some_and(|depth| depth.format.bits() == 16) {
-                return Ok(surface.depths().map(shown_as_565).collect());
-            }
-            words = surface.chip_depth_words().collect();
-        }
-        Ok(surface::show_all(SurfaceFormat::A8R8G8B8, &words))
+        self.prepare(policies)?.render(options, shortcuts, mask)
+    }
+
+    /// Builds and plans the frame's scenes once, for several renders.
+    ///
+    /// # Errors
+    /// Those of [`render`](Self::render).
+    pub fn prepare(&self, policies: Policies) -> Result<PreparedFrame, Vec<PlanError>> {
+        PreparedFrame::new((self.make)(), policies)
     }
 
     /// Returns the frame's scenes, of which none is left to be drawn before.
@@ -387,22 +337,6 @@ impl Frame {
         Ok(view.is_none().then_some(scene))
     }
 
-    /// Returns the scene that draws the frame, or most of it.
-    pub fn main_scene(&self) -> Scene {
-        (self.make)().scene
-    }
-
-    /// Returns the shortcuts that can change the frame.
-    ///
-    /// # Errors
-    /// Those of [`render`](Self::render).
-    pub fn shortcuts(&self) -> Result<Shortcuts, Vec<PlanError>> {
-        let Drawn { scene, before, view, .. } = (self.make)();
-        let scenes = before.into_iter().chain([scene]).chain(view);
-        let concerning = |scene: Scene| planned(&scene, Policies::DEFAULT).map(|plan| shortcut::concerning(&plan));
-        scenes.map(concerning).try_fold(Shortcuts::NONE, |all, some| Ok(all.iter().chain(some?.iter()).collect()))
-    }
-
     /// Returns whether a picture equals the capture outside the programs' text.
     pub fn is(&self, pixels: &[[u8; 4]]) -> bool {
         digest(pixels, &self.text) == self.digest
@@ -412,6 +346,82 @@ impl Frame {
     pub fn compared(&self) -> u64 {
         let area = |r: &Rectangle| u64::from(r.width) * u64::from(r.height);
         u64::from(SIZE.0) * u64::from(SIZE.1) - self.text.iter().map(area).sum::<u64>()
+    }
+}
+
+/// The scenes of a frame with their plans.
+#[derive(Debug)]
+pub struct PreparedFrame {
+    drawn: Drawn,
+    policies: Policies,
+    before: Vec<Plan>,
+    main: Plan,
+    view: Option<Plan>,
+}
+
+impl PreparedFrame {
+    fn new(drawn: Drawn, policies: Policies) -> Result<PreparedFrame, Vec<PlanError>> {
+        let before = drawn.before.iter().map(|scene| planned(scene, policies)).collect::<Result<_, _>>()?;
+        let main = planned(&drawn.scene, policies)?;
+        let view = drawn.view.as_ref().map(|scene| planned(scene, policies)).transpose()?;
+        Ok(PreparedFrame { drawn, policies, before, main, view })
+    }
+
+    /// Returns the shortcuts that can change the frame.
+    pub fn shortcuts(&self) -> Shortcuts {
+        let plans = self.before.iter().chain([&self.main]).chain(&self.view);
+        plans.flat_map(|plan| shortcut::concerning(plan).iter().collect::<Vec<_>>()).collect()
+    }
+
+    /// Draws the frame as a renderer with shortcuts does. Pixels outside of the mask may be left undrawn.
+    ///
+    /// # Errors
+    /// Returns the plan's errors if a scene that reads what was drawn before it cannot be planned.
+    pub fn render(
+        &self,
+        options: &RenderOptions,
+        shortcuts: Shortcuts,
+        mask: Mask<'_>,
+    ) -> Result<Vec<[u8; 4]>, Vec<PlanError>> {
+        let draw = |plan: &Plan, mask: Mask<'_>, memory: Option<&[u32]>| -> Rendered {
+            let plan = match shortcuts.is_empty() {
+                true => Cow::Borrowed(plan),
+                false => Cow::Owned(plan.clone().with_shortcuts(shortcuts)),
+            };
+            let mut frames = cleared(&plan);
+            if let Some(words) = memory {
+                frames.surfaces[0].words = seen_as(words, plan.targets()[0].format);
+            }
+            shortcut::render(&plan, shortcuts, options, &mut frames, mask);
+            frames
+        };
+        let Drawn { scene, view, shown, .. } = &self.drawn;
+        let main = if self.before.is_empty() {
+            Cow::Borrowed(&self.main)
+        } else {
+            let mut scene = scene.clone();
+            for (before, texture) in self.before.iter().zip(&mut scene.textures) {
+                put_memory(&draw(before, None, None).surfaces[0], texture);
+            }
+            Cow::Owned(planned(&scene, self.policies)?)
+        };
+        let mut frames = draw(&main, mask.filter(|_| view.is_none()), None);
+        let mut words = std::mem::take(&mut frames.surfaces[0].words);
+        if let Some(view) = &self.view {
+            put_back(&draw(view, None, Some(&words)).surfaces[0], &mut words);
+        }
+        if *shown == Shown::DepthStencil
+            && let Some(depth) = scene.targets[0].depth
+        {
+            let read = |word| shortcut::shown_depth(shortcuts, depth.format, depth_of(word));
+            let surface = &mut frames.surfaces[0];
+            if depth.format.bits() == 16 {
+                return Ok(surface.depth.iter().map(|word| shown_as_565(read(*word))).collect());
+            }
+            surface.depth.iter_mut().for_each(|word| *word = depth_stencil(read(*word), stencil_of(*word)));
+            words = surface.chip_depth_words().collect();
+        }
+        Ok(surface::show_all(SurfaceFormat::A8R8G8B8, &words))
     }
 }
 

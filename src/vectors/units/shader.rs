@@ -96,6 +96,7 @@ impl CoordinateStage {
             unit: None,
             live: 0,
             dots: false,
+            unit_normals: false,
             lights_alpha: false,
             signed_luminance: false,
         };

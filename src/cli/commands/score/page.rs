@@ -1,5 +1,7 @@
 //! The page of a report.
 
+use base64::Engine as _;
+use base64::engine::general_purpose::URL_SAFE_NO_PAD;
 use maud::{DOCTYPE, Markup, html};
 use ninebit::shortcut::Shortcuts;
 use ninebit::shown;
@@ -23,9 +25,21 @@ pub(super) struct Report<'a> {
     /// All runs. The last is shown in full.
     pub(super) runs: &'a [Run],
     pub(super) exhibits: &'a [Exhibit],
+    /// The frames that have a page of the inspector.
+    pub(super) inspected: &'a [usize],
     pub(super) evidence: &'a [Option<Evidence>],
     /// The command that made the report, without suites.
     pub(super) command: &'a str,
+}
+
+impl Report<'_> {
+    /// Returns the address of the inspector's page of a frame, at a pixel, if there is one.
+    fn inspector(&self, frame: usize, pixel: Option<(u32, u32)>) -> Option<String> {
+        let exhibit = self.exhibits.iter().find(|exhibit| exhibit.frame == frame)?;
+        let state = pixel.map(|(x, y)| URL_SAFE_NO_PAD.encode(format!("{{\"p\":[{x},{y}]}}")));
+        let hash = state.map_or_else(String::new, |state| format!("#{state}"));
+        self.inspected.contains(&frame).then(|| format!("scenes/{}.html{hash}", exhibit.file))
+    }
 }
 
 /// Returns the page.
@@ -48,11 +62,11 @@ pub(super) fn page(report: &Report<'_>) -> String {
                         (tiles(run, causes))
                     }
                     main {
-                        @if report.runs.len() > 1 { h2 { "History" } (chart::history(report.runs)) }
+                        @if report.runs.len() > 1 { h2 { "History" } div.scroll { (chart::history(report.runs)) } (news(report.runs)) }
                         @if !causes.causes.is_empty() { (table_of_causes(causes)) (cases(report, causes)) }
                         (table_of_suites(report.runs))
                         (figures(report, run))
-                        (rest(run, causes))
+                        (rest(run))
                     }
                 }
             }
@@ -96,19 +110,30 @@ fn does(variant: Shortcuts) -> String {
 
 fn table_of_causes(causes: &Causes) -> Markup {
     let most = causes.causes.iter().map(|cause| cause.pixels).max().unwrap_or(1);
+    let shown = causes.causes.len().min(COLORS.len());
     html! {
         h2 { "Causes" }
         p.quiet {
             "A pixel is explained where the model yields the chip's bytes by its rules and the other renderer's with a shortcut. \
              Each is counted once, under the fewest shortcuts. The last column is the number that a shortcut would yield if the errors were dealt out at random."
         }
+        (rows_of_causes(&causes.causes[..shown], 0, most))
+        @if causes.causes.len() > shown {
+            details { summary { (causes.causes.len() - shown) " more causes" } (rows_of_causes(&causes.causes[shown..], shown, most)) }
+        }
+    }
+}
+
+/// Returns causes as rows of a table. The first has a number.
+fn rows_of_causes(causes: &[Cause], first: usize, most: u64) -> Markup {
+    html! {
         div.scroll { table {
             tr { th { "the renderer ..." } th { "rule" } th { "grade" } th.n { "pixels" } th {} th.n { "by chance" } }
-            @for (n, cause) in causes.causes.iter().enumerate() {
+            @for (n, cause) in causes.iter().enumerate().map(|(n, cause)| (first + n, cause)) {
                 @let id = first_rule(cause.variant);
                 tr {
-                    td { (swatch(n)) a href={ "#cause" (n) } { (does(cause.variant)) } }
-                    td { @for shortcut in cause.variant.iter() { (shortcut.reading().rules[0]) " " } }
+                    td.wide { (swatch(n)) a href={ "#cause" (n) } { (does(cause.variant)) } }
+                    td { @for shortcut in cause.variant.iter() { span.rule { (shortcut.reading().rules[0]) } " " } }
                     td { (grade(id)) }
                     td.n { (thousands(cause.pixels)) }
                     td { (chart::bar(cause.pixels, most, "cause")) }
@@ -122,11 +147,22 @@ fn table_of_causes(causes: &Causes) -> Markup {
 fn cases(report: &Report<'_>, causes: &Causes) -> Markup {
     html! {
         h2 { "Cause by cause" }
-        @for (n, cause) in causes.causes.iter().enumerate() {
-            details id={ "cause" (n) } open[n == 0] {
-                summary { (swatch(n)) code { (cause.variant.names()) } ": " (thousands(cause.pixels)) " pixels" }
-                (case(report, cause, report.evidence.get(n).and_then(Option::as_ref)))
+        @let (first, rest) = causes.causes.split_at(causes.causes.len().min(COLORS.len()));
+        @for (n, cause) in first.iter().enumerate() { (folded(report, n, cause)) }
+        @if !rest.is_empty() {
+            details {
+                summary { (rest.len()) " more causes" }
+                @for (n, cause) in rest.iter().enumerate() { (folded(report, first.len() + n, cause)) }
             }
+        }
+    }
+}
+
+fn folded(report: &Report<'_>, n: usize, cause: &Cause) -> Markup {
+    html! {
+        details id={ "cause" (n) } open[n == 0] {
+            summary { (swatch(n)) code { (cause.variant.names()) } ": " (thousands(cause.pixels)) " pixels" }
+            (case(report, cause, report.evidence.get(n).and_then(Option::as_ref)))
         }
     }
 }
@@ -140,11 +176,12 @@ fn case(report: &Report<'_>, cause: &Cause, evidence: Option<&Evidence>) -> Mark
                 pre { (rule.field("Formula")) }
             }
         }
-        @if let Some(Evidence { frame, sample, lines }) = evidence {
+        @if let Some(Evidence { frame: (frame, index), sample, lines }) = evidence {
             @let suite = frame.rsplit_once('/').map_or("", |(suite, _)| suite);
             p {
                 "Pixel " (sample.at.0) ", " (sample.at.1) " of " code { (shown::name(frame)) } ": the chip shows "
                 (pixel(sample.truth)) ", the renderer " (pixel(sample.other)) "."
+                @if let Some(place) = report.inspector(*index, Some(sample.at)) { " " a href=(place) { "Open in the inspector" } }
             }
             @if !lines.is_empty() {
                 div.scroll { table {
@@ -153,11 +190,16 @@ fn case(report: &Report<'_>, cause: &Cause, evidence: Option<&Evidence>) -> Mark
                         @let part = |side: &Option<(String, String)>| side.clone().unwrap_or_default();
                         @let (first, second) = (part(&line.first), part(&line.second));
                         tr {
-                            td { code { (line.name) } } td { (line.rule) } td.n { (first.1) } td.n { (second.1) }
+                            td { code { (line.name) } } td.rule { (line.rule) } td.n { (first.1) } td.n { (second.1) }
                             td { code { (if first.0 == second.0 { first.0 } else { format!("{} | {}", first.0, second.0) }) } }
                         }
                     }
                 } }
+            }
+            @let rows: Vec<&str> = rules.iter().filter_map(|id| super::rule(id)?.fields("Command").next()).collect();
+            @if !rows.is_empty() {
+                h3 { "For a unit test" }
+                pre { @for row in rows { (row.trim_matches('`')) "\n" } }
             }
             h3 { "For a bug report" }
             p {
@@ -209,6 +251,28 @@ fn jumps(before: &Total, now: &Total) -> bool {
     before.frames > 0 && now.pixels.wrong > 2 * before.pixels.wrong && now.pixels.wrong > now.pixels.compared / 100
 }
 
+/// Returns the suites that have become much worse since the run before the last.
+fn news(runs: &[Run]) -> Markup {
+    let [.., before, now] = runs else { return html! {} };
+    let (before, now) = (before.suites(), now.suites());
+    let both = now.iter().filter_map(|(suite, now)| Some((suite, before.get(suite)?, now)));
+    let worse: Vec<_> = both.filter(|(_, before, now)| jumps(before, now)).collect();
+    html! {
+        @if !worse.is_empty() {
+            p { "New in the last:" }
+            ul {
+                @for (suite, before, now) in worse {
+                    li {
+                        (shown::name(suite)) ": " (thousands(now.pixels.wrong)) " wrong pixels, "
+                        (thousands(before.pixels.wrong)) " before; " (now.exact) " of " (now.frames) " frames exact, "
+                        (before.exact) " of " (before.frames) " before"
+                    }
+                }
+            }
+        }
+    }
+}
+
 fn figures(report: &Report<'_>, run: &Run) -> Markup {
     html! {
         @if !report.exhibits.is_empty() {
@@ -218,7 +282,10 @@ fn figures(report: &Report<'_>, run: &Run) -> Markup {
                 @let frame = &run.frames[exhibit.frame];
                 @let name = format!("{}/{}", frame.suite, frame.name);
                 figure {
-                    figcaption { strong { (shown::name(&name)) } ": " (thousands(frame.counts.wrong)) " pixels wrong" }
+                    figcaption {
+                        strong { (shown::name(&name)) } ": " (thousands(frame.counts.wrong)) " pixels wrong"
+                        @if let Some(place) = report.inspector(exhibit.frame, None) { ", " a href=(place) { "open in the inspector" } }
+                    }
                     div.pictures {
                         @for (kind, _) in &exhibit.pictures {
                             a href={ "pictures/" (exhibit.file) "-" (kind) ".png" } {
@@ -234,12 +301,8 @@ fn figures(report: &Report<'_>, run: &Run) -> Markup {
 }
 
 /// Returns the list of frames in which the most pixels are unexplained.
-fn rest(run: &Run, causes: &Causes) -> Markup {
-    let variants = causes.variants();
-    let left = |frame: &ninebit_score::FrameScore| {
-        let explained = frame.explained.as_ref().map_or(0, |explained| explained.covered(&variants).0);
-        frame.counts.wrong - explained
-    };
+fn rest(run: &Run) -> Markup {
+    let left = |frame: &ninebit_score::FrameScore| frame.counts.wrong - frame.explained();
     let mut frames: Vec<_> =
         run.frames.iter().map(|frame| (left(frame), frame)).filter(|(left, _)| *left > 0).collect();
     frames.sort_by_key(|(left, _)| std::cmp::Reverse(*left));
@@ -252,7 +315,7 @@ fn rest(run: &Run, causes: &Causes) -> Markup {
                     @for (left, frame) in frames.iter().take(MOST_LISTED) {
                         tr {
                             td { (shown::name(&format!("{}/{}", frame.suite, frame.name))) } td.n { (thousands(*left)) }
-                            td { @if frame.explained.is_none() { "the model does not draw it" } }
+                            td { @if frame.explanation.is_none() { "the model does not draw it" } }
                         }
                     }
                 } }
