@@ -8,8 +8,10 @@ use ninebit::engine::context::TriangleContext;
 use ninebit::engine::walk::triangles;
 use ninebit::engine::{RenderOptions, TextureWords, cleared, render};
 use ninebit::frame::Frames;
+use ninebit::limits::MEMORY_IMAGE;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::raster::stroke::Figure;
+use ninebit_files::read::{self, Kind};
 use ninebit_lower::{Attribute, Draw, Field, Language};
 
 use crate::drawn::Printed;
@@ -227,7 +229,7 @@ impl Printed<'_> {
 
     /// Reads the targets that a program has drawn.
     pub fn read(&self, folder: &Path, frames: &mut Frames) {
-        let drawn = std::fs::read(folder.join("drawn.bin")).unwrap();
+        let drawn = read::bytes(&folder.join("drawn.bin"), Kind::Regular, MEMORY_IMAGE).unwrap();
         let mut drawn = drawn.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word));
         for surface in &mut frames.surfaces {
             let has_depth = !surface.depth.is_empty();
