@@ -105,7 +105,7 @@ fn hold_committed(way: Way, step: usize) {
 
 #[test]
 fn the_page_lists_all_refusals() {
-    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/lower.md")).unwrap();
+    let page = include_str!("../../../docs/lower.md");
     let [_, table] = page.split("<!-- held by src/lower/tests/whole.rs: begin -->\n").collect::<Vec<_>>()[..] else {
         panic!("the page has one table");
     };
