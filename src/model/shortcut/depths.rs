@@ -71,7 +71,7 @@ fn clear(format: DepthFormat, word: u32, of_halves: bool) -> u32 {
     if word < LEAST { 0 } else { word }
 }
 
-/// Returns the depth that is read from a buffer of a format after [`change`].
+/// Returns the depth that is read from a buffer of a format after `change`.
 pub fn shown_depth(shortcuts: Shortcuts, format: DepthFormat, word: u32) -> u32 {
     if !scales(shortcuts) || !format.is_float() {
         return word;

@@ -184,7 +184,7 @@ impl Selection {
         (log2_ratio + of(self.bias)).greatest(of(self.min_lod)).least(of(self.max_lod))
     }
 
-    /// Like [`levels`], for a unit whose state is set up.
+    /// Like `levels`, for a unit whose state is set up.
     #[inline(always)]
     pub fn levels<I: Integer>(self, lod: I) -> (I, I, I) {
         let of = |n: i32| I::new(n.into());
