@@ -227,12 +227,25 @@ fn mapped(mapping: DotMapping, bytes: [i128; 4]) -> [f32; 3] {
         }
         DotMapping::HiloHemisphere => {
             let [high, low] = [a << 8 | r, g << 8 | b].map(|v| signed(true, v, 16));
-            let left = ((1 << 30) - high * high - low * low).max(0);
-            // 2^28 (1 - x^2 - y^2) is left / 4. The result is the root of its floor.
-            let third = ((left / 4) as u128).isqrt() as i128;
-            [nearest_f32(high, 32768, 0), nearest_f32(low, 32768, 0), nearest_f32(third, 1, -14)]
+            let left = (1 << 30) - high * high - low * low;
+            let (third, power) = if left > 0 { root_in_pieces(left) } else { (0, 0) };
+            [nearest_f32(high, 32768, 0), nearest_f32(low, 32768, 0), nearest_f32(third, 1, power)]
         }
     }
+}
+
+/// TSH-3: returns r(n) of n = left / 2^30 as a whole number and the power of two that it is multiplied by.
+fn root_in_pieces(left: i128) -> (i128, i32) {
+    let k = (0..).find(|k| left << (2 * k) >= 1 << 28).expect("left is positive");
+    // Ends of the piece, in 2^-30.
+    let m = left << (2 * k);
+    let width = if m < 1 << 29 { (1 << 30) / 128 } else { (1 << 30) / 64 };
+    let (c, along) = (m / width * width, 1024 * (m % width) / width);
+    // Roots with 60 fraction bits, which no difference of two comes near enough to a multiple of 2^-16 to mistake.
+    let root = |n: i128| ((n << 90) as u128).isqrt() as i128;
+    let (start, rise) = (root(c) >> 42, (root(c + width) - root(c)) >> 44);
+    // start has 18 fraction bits, rise and along 26 together.
+    ((256 * start + rise * along) >> 11, -15 - k)
 }
 
 /// TSH-5: returns 2 (n.e) n - (n.n) e.

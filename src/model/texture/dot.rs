@@ -40,16 +40,45 @@ pub(crate) fn fractions(mapping: DotMapping, bytes: [u8; 4]) -> [(i32, i32); 3] 
         DotMapping::Hilo1 => [(i32::from(halves[0]), 65535), (i32::from(halves[1]), 65535), (1, 1)],
         DotMapping::HiloHemisphere => {
             let [high, low] = halves.map(|half| i32::from(half as i16));
-            [(high, 32768), (low, 32768), (third_of_unit(high, low), 1 << 14)]
+            [(high, 32768), (low, 32768), third_of_unit(high, low)]
         }
     }
 }
 
-/// TSH-3: returns floor(2^14 sqrt(max(0, 1 - x^2 - y^2))) for x = high/32768 and y = low/32768.
-fn third_of_unit(high: i32, low: i32) -> i32 {
+/// TSH-3: number of pieces of the root of a mantissa in [1/4, 1/2), and of one in [1/2, 1).
+const PIECES: u32 = 32;
+
+/// TSH-3: the straight pieces of the root, 32 to an octave: the root at a piece's start with 18 fraction bits, and its rise
+/// with 16, both cut. The last is the root of 1.
+const ROOT: [(u32, u32); 2 * PIECES as usize + 1] = {
+    let mut pieces = [(1 << 18, 0); 2 * PIECES as usize + 1];
+    let mut at = 0;
+    while at < 2 * PIECES as usize {
+        // A piece of the lower octave is 1/128 wide, of the upper 1/64; roots have 30 fraction bits first.
+        let (start, up) = if at < PIECES as usize { (at as u64 + 32, 53) } else { (at as u64, 54) };
+        let (root, next) = ((start << up).isqrt(), ((start + 1) << up).isqrt());
+        pieces[at] = ((root >> 12) as u32, ((next - root) >> 14) as u32);
+        at += 1;
+    }
+    pieces
+};
+
+/// TSH-3: returns the third component of the unit vector with x = high/32768 and y = low/32768, a fraction of at most 16
+/// bits over a power of two. It is at most 1.3 * 2^-14 below the root of what is left, and never above.
+fn third_of_unit(high: i32, low: i32) -> (i32, i32) {
     let left = (1 << 30) - i64::from(high) * i64::from(high) - i64::from(low) * i64::from(low);
-    // floor(floor(sqrt n) / d) is floor(sqrt n / d).
-    (left.max(0).unsigned_abs().isqrt() / 2) as i32
+    if left <= 0 {
+        return (0, 1);
+    }
+    // A mantissa in [1/4, 1), or 1, of 30 bits; the root is that of `left` times 2^halvings.
+    let halvings = 29_u32.saturating_sub(left.ilog2()) / 2;
+    let mantissa = (left << (2 * halvings)) as u32;
+    let upper = mantissa >> 29 != 0;
+    let width = if upper { 24 } else { 23 };
+    let piece = (mantissa >> width) - if upper { 0 } else { PIECES };
+    let (start, rise) = ROOT[piece as usize];
+    let along = mantissa >> (width - 10) & 1023;
+    ((((start << 8) + rise * along) >> 11) as i32, 1 << (15 + halvings))
 }
 
 /// TSH-1 to TSH-3 in single precision, with each fraction rounded once.
@@ -172,11 +201,24 @@ mod tests {
 
     #[test]
     fn third_components_complete_unit_vectors() {
-        assert_eq!((third_of_unit(0, 0), third_of_unit(32767, 0), third_of_unit(-32768, 0)), (1 << 14, 127, 0));
-        assert_eq!(third_of_unit(30000, 30000), 0);
+        assert_eq!((third_of_unit(0, 0), third_of_unit(-32768, 0)), ((1 << 15, 1 << 15), (0, 1)));
+        assert_eq!(third_of_unit(30000, 30000), (0, 1));
         // 3-4-5: x = 3/5 and y = 0 yield 4/5, as closely as 32768 allows.
-        let third = third_of_unit(19661, 0);
-        assert!((f64::from(third) / f64::from(1 << 14) - 0.8).abs() < 1e-4);
+        assert_eq!(third_of_unit(19660, 0), (26214, 1 << 15));
+        // What is left of 1 is 65535 / 2^30, and its root 255.998 / 2^15.
+        assert_eq!(third_of_unit(32767, 0), (32767, 1 << 22));
+    }
+
+    /// The pieces are the root: their ends meet within what is cut.
+    #[test]
+    fn pieces_of_the_root_meet() {
+        for (n, pair) in ROOT.windows(2).enumerate() {
+            let [(start, rise), (next, _)] = [pair[0], pair[1]];
+            let gap = i64::from(next) - i64::from(start) - 4 * i64::from(rise);
+            assert!((0..=5).contains(&gap), "piece {n}: {gap}");
+            let of = if n < 32 { (n + 32) as f64 / 128.0 } else { n as f64 / 64.0 };
+            assert_eq!(start, (of.sqrt() * f64::from(1 << 18)) as u32, "piece {n}");
+        }
     }
 
     #[test]
@@ -190,12 +232,12 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_third_is_the_floor(high in -32768..=32767_i32, low in -32768..=32767_i32) {
-            let third = u128::from(third_of_unit(high, low) as u32);
-            let left = (32768_i64.pow(2) - i64::from(high).pow(2) - i64::from(low).pow(2)).max(0) as u128;
-            // third <= 2^14 sqrt(left) / 2^15 < third + 1.
-            prop_assert!((2 * third).pow(2) <= left);
-            prop_assert!((2 * third + 2).pow(2) > left);
+        fn the_third_is_near_and_below(high in -32768..=32767_i32, low in -32768..=32767_i32) {
+            let (numerator, denominator) = third_of_unit(high, low);
+            let third = f64::from(numerator) / f64::from(denominator);
+            let left = (32768_i64.pow(2) - i64::from(high).pow(2) - i64::from(low).pow(2)).max(0);
+            let off = (left as f64).sqrt() / 32768.0 - third;
+            prop_assert!((0.0..=1.3 / f64::from(1 << 14)).contains(&off), "{}", off);
         }
 
         /// Each operation is correctly rounded. A single operation may be checked in double precision and rounded to
