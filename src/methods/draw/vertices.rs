@@ -113,13 +113,7 @@ impl Stage {
                 let (program, constants) = &mut **program;
                 program.run(constants, attributes)
             }
-            Stage::Fixed(fixed) => {
-                let mut output = fixed.run(attributes);
-                let [x, y, z, w] = output.position;
-                let [right, down, far, _] = fixed.viewport_offset;
-                output.position = [x / w + right, y / w + down, z / w + far, w];
-                output
-            }
+            Stage::Fixed(fixed) => fixed.run(attributes),
         }
     }
 }

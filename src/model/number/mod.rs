@@ -55,6 +55,7 @@ mod paired;
 mod part;
 mod real;
 mod scalar;
+pub mod transform;
 
 pub use block::{Halved, Narrow, Quarter, Swar2};
 pub use ideal_tracks::{IDEAL_TRACKS, IdealTracks};

@@ -10,6 +10,7 @@ pub mod fog;
 pub mod point;
 pub mod shader;
 pub mod texgen;
+pub mod unit;
 pub mod vector;
 
 use vector::{dot3, dot4, unit};

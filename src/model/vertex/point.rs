@@ -1,6 +1,7 @@
 //! PNT-3: the sizes of points that the vertex side computes.
 #![allow(clippy::float_arithmetic, reason = "the vertex side computes with floats")]
 
+use crate::number::transform::twice_root_of_middle;
 use crate::state::LARGEST_SIZE;
 
 /// How the size of a point depends on its distance from the viewer.
@@ -36,9 +37,8 @@ fn reciprocal_root(x: f32) -> f32 {
     if x == f32::INFINITY {
         return 0.0;
     }
-    let (exponent, fraction) = ((x.to_bits() >> 23) as i32 - 127, x.to_bits() >> 17 & 63);
-    // floor(128 / sqrt(m 2^o)) for the middle m = (129 + 2 fraction) / 128 and an exponent that is odd by o.
-    let root = ((1_u32 << 21 >> exponent.rem_euclid(2)) / (129 + 2 * fraction)).isqrt();
+    let exponent = (x.to_bits() >> 23) as i32 - 127;
+    let root = twice_root_of_middle(x.to_bits()) / 2;
     let unit = f32::from_bits(((127 - 7 - exponent.div_euclid(2)) as u32) << 23);
     root as f32 * unit
 }

@@ -1,6 +1,7 @@
 //! DEP-1 and DEP-3: 992 small quads from the nearest depth to the farthest, and three large ones behind them, in four formats and over 49 clear
 //! values.
 
+use super::space::Matrix;
 use super::*;
 
 /// The depth formats, their part in the names of frames, and the deepest word that the programs use.
@@ -87,6 +88,84 @@ pub(super) fn formats(frames: &mut Frames) {
                 let float = if format.is_float() { "y" } else { "n" };
                 let name = format!("DepthFmt_{bits}_C{compressed}_FZ{float}_M{clear:06x}");
                 frames.both(&name, scene.clone());
+            }
+        }
+    }
+}
+
+/// The depth that the fixed function's matrix has as the deepest for a format, as a binary32 pattern where it is a float.
+fn deepest_of_matrix(format: DepthFormat) -> f64 {
+    match format {
+        DepthFormat::Z16 => 65535.0,
+        DepthFormat::Z24S8 => 16_777_215.0,
+        DepthFormat::Z16F => f32::from_bits(0x43ff_f800).into(),
+        DepthFormat::Z24S8F => f32::from_bits(0x7149_f2ca).into(),
+    }
+}
+
+/// Returns the triangles of Depth_buffer_fixed_function: 18 by 18 small quads, two bars, and the quad behind all of them. `matrix` leads from the
+/// world to window coordinates.
+fn unprojected_vertices(matrix: &Matrix) -> Vec<Vertex> {
+    let (left, top, right, bottom) = (128.0_f32, 48.0_f32, 512.0_f32, 432.0_f32);
+    let (near, far) = (-6.0_f32, 193.0_f32);
+    // The program finds the points before it sets the format of depths.
+    let before = space::product(space::eye(), space::window());
+    let mut all = Vec::new();
+    // Depths and colours clockwise from the upper left.
+    let mut add = |[left, top, right, bottom]: [f32; 4], depths: [f32; 4], colors: [[f32; 3]; 4]| {
+        for n in [0, 1, 2, 0, 2, 3] {
+            let point = space::unproject(corners([left, top, right, bottom])[n], depths[n], &before);
+            let [r, g, b] = colors[n];
+            let diffuse = VertexColor::Floats([r, g, b, 1.0]);
+            all.push(Vertex { position: space::fixed_function_to(point, matrix), diffuse, ..Vertex::default() });
+        }
+    };
+    let increment = (far - near) / 328.0;
+    let (mut z, mut slope) = (near, increment * 0.75);
+    for row in 0..18_u8 {
+        for column in 0..18_u8 {
+            let (x, y) = (left + 8.0 + 20.0 * f32::from(column), top + 8.0 + 20.0 * f32::from(row));
+            let other = z + slope;
+            let grey = |z: f32| [0.25 + z / far * 0.75; 3];
+            let (first, second) = (grey(z), grey(other));
+            // The program gives the colours of the upper right and the lower left corner to each other.
+            add([x, y, x + 16.0, y + 16.0], [z, other, other, z], [first, first, second, second]);
+            z += increment;
+            slope = -slope;
+        }
+    }
+    let bar = far * 0.75;
+    let (first, second) = ([bar / far, 0.75, bar / far], [0.75, near / far, near / far]);
+    add(
+        [left + 4.0, bottom - 10.0, right - 20.0, bottom - 5.0],
+        [bar, near, near, bar],
+        [first, first, second, second],
+    );
+    let bar = far * 0.5;
+    let (first, second) = ([near / far, 0.5, near / far], [0.5, bar / far, bar / far]);
+    add([right - 10.0, top + 5.0, right - 2.0, bottom - 5.0], [near, near, bar, bar], [first, second, second, first]);
+    let back = far * 2.0 / 3.0;
+    let colors = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.4, 0.3, 0.0], [1.0, 0.0, 0.0]];
+    add([left, top, right, bottom], [back, back, far, far], colors);
+    all
+}
+
+/// Adds the frames of Depth_buffer_fixed_function.
+pub(super) fn fixed_function(frames: &mut Frames) {
+    const CUTOFFS: u32 = 4;
+    for (format, bits, deepest) in FORMATS {
+        let matrix = space::product(space::eye(), space::window_to(deepest_of_matrix(format)));
+        let range = DepthRange { lowest: 0.0, highest: 16_777_216.0, clamps: false, drops_triangles: false };
+        let depth_test = Some(in_steps(CompareFunction::Less, true, Some(range)));
+        let draw = Draw { depth_test, ..draw(Topology::Triangles, unprojected_vertices(&matrix)) };
+        for step in 0..=CUTOFFS {
+            let clear = deepest - step * (deepest / CUTOFFS);
+            let mut target = frame_buffer(0xff00_0000);
+            target.depth = Some(DepthBuffer { format, clear, clear_stencil: 0 });
+            let scene = scene(vec![target], vec![], vec![draw.clone()]);
+            for compressed in ["n", "y"] {
+                let float = if format.is_float() { "y" } else { "n" };
+                frames.both(&format!("{bits}_C{compressed}_FZ{float}_M{clear:06x}"), scene.clone());
             }
         }
     }

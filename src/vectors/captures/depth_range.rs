@@ -11,10 +11,8 @@ const WHOLE_RANGE: DepthRange = DepthRange { lowest: 0.0, highest: DEEPEST, clam
 fn textured(corners: [[f32; 3]; 4], depth_test: DepthTest) -> Draw {
     let matrix = space::product(space::eye(), space::window_to(f64::from(DEEPEST)));
     let vertex = |n: usize| {
-        let [x, y, z] = corners[n].map(f64::from);
-        let [x, y, z, w] = space::transform([x, y, z, 1.0], &matrix);
-        let [x, y, z, w] = [x / w, y / w, z / w, w].map(|value| value as f32);
-        placed([x + UNPROJECTED, y + UNPROJECTED, z, w], draws::corners([0.0, 0.0, 256.0, 256.0])[n])
+        let [x, y, z] = corners[n];
+        placed(space::fixed_function_to([x, y, z, 1.0], &matrix), draws::corners([0.0, 0.0, 256.0, 256.0])[n])
     };
     let draw = fetching(draw(Topology::Quads, [0, 1, 2, 3].map(vertex).to_vec()), 0, nearest(0));
     Draw { depth_test: Some(depth_test), ..draw }

@@ -2,6 +2,7 @@
 
 use super::*;
 use ninebit::vertex::fog::passed;
+use ninebit::vertex::unit;
 
 /// Names of [`FogMode::ALL`] as they appear in the names of frames.
 const MODES: &str = "linear exp exp2 linear_abs exp_abs exp2_abs";
@@ -201,12 +202,11 @@ const SOURCES: [&str; 5] = ["spec_alpha", "radial", "planar", "abs_planar", "fog
 /// The alphas of the secondary colours at a panel's corners.
 const SECONDARY_ALPHAS: [f32; 4] = [0.0, 1.0, 0.75, 0.25];
 
-/// Returns the distance of a panel's corner from the eye.
-fn distance(edges: [f32; 4], corner: usize, w: f32) -> f32 {
-    let [x, y] = corners(edges)[corner];
-    let scale = space::window()[0][0];
-    let [x, y] = [f64::from(x) - 320.0, f64::from(y) - 240.0].map(|offset| offset * f64::from(w) / scale);
-    (x * x + y * y + f64::from(w) * f64::from(w)).sqrt() as f32
+/// Returns the distance from the eye of a point that programs find for a panel's corner, by the transform unit.
+fn distance(edges: [f32; 4], corner: usize, z: f32) -> f32 {
+    let point = space::unproject(corners(edges)[corner], z, &space::product(space::eye(), space::window()));
+    let [x, y, z, _] = unit::transform(&space::rows(&space::eye()), unit::words(point));
+    f32::from_bits(unit::direction([x, y, z]).1)
 }
 
 /// Adds the frames of Fog_gen: panels farther and farther away, with coordinates of five sources. With a vertex program, every source yields the
@@ -236,7 +236,7 @@ pub(super) fn generated(frames: &mut Frames) {
                             let d = match source {
                                 _ if is_program => fog_x,
                                 "spec_alpha" => SECONDARY_ALPHAS[corner],
-                                "radial" => distance(edges, corner, w),
+                                "radial" => distance(edges, corner, w - 7.0),
                                 "fog_x" => fog_x,
                                 // The programs' plane yields twice the depth.
                                 _ => 2.0 * w,

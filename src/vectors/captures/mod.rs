@@ -186,6 +186,7 @@ const SUITES: &[Suite] = &[
     ("Combiner", combiner::frames),
     ("Depth_Clamp", depth_range::clamped),
     ("Depth_buffer", depth::formats),
+    ("Depth_buffer_fixed_function", depth::fixed_function),
     ("Depth_function", clears::functions),
     ("Edge_flag", lines::edge_flags),
     ("Fog", fog::planar),

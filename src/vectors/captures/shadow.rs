@@ -141,15 +141,16 @@ impl Path {
         if self.is_program { space::programmed_edges } else { unprojected }
     }
 
-    /// Returns the depth of a point in world space, and its w. The chip truncates every product and sum; a vertex program adds the viewer's distance
-    /// first.
+    /// Returns the depth of a point in world space, and its w. A vertex program adds the viewer's distance first.
     fn depth(self, z: f32) -> [f32; 2] {
         let window = space::window_to(f64::from(self.deepest));
-        let w = space::toward_zero(f64::from(z) + space::DISTANCE);
-        let (at, offset) = if self.is_program { (w, window) } else { (z, space::product(space::eye(), window)) };
-        let scaled = space::toward_zero(f64::from(at) * window[2][2]);
-        let depth = f64::from(space::toward_zero(f64::from(scaled) + offset[3][2]));
-        [space::toward_zero(depth * f64::from(space::toward_zero(1.0 / f64::from(w)))), w]
+        let (z, matrix) = if self.is_program {
+            (z + space::DISTANCE as f32, window)
+        } else {
+            (z, space::product(space::eye(), window))
+        };
+        let [_, _, depth, w] = space::fixed_function_to([0.0, 0.0, z, 1.0], &matrix);
+        [depth, w]
     }
 
     /// Returns a rectangle whose depths at its upper and lower edge are those of two z in world space.

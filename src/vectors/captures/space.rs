@@ -1,5 +1,6 @@
 //! Vertex transforms of the programs: matrices in single precision that row vectors are multiplied by.
 
+use ninebit::vertex::unit;
 use std::f32::consts::FRAC_1_SQRT_2;
 
 /// A matrix as an array of rows.
@@ -13,17 +14,45 @@ const COTANGENT: f32 = 2.414_213_4;
 /// Distance of the viewer from the origin.
 pub(super) const DISTANCE: f64 = 7.0;
 
-fn cut(matrix: Matrix) -> Matrix {
-    matrix.map(|row| row.map(|value| f64::from(value as f32)))
+/// Returns a row vector times a matrix in single precision, as the programs compute it: products are added from left to right.
+fn in_single(vector: [f32; 4], matrix: &Matrix) -> [f32; 4] {
+    let term = |row: usize, column: usize| vector[row] * matrix[row][column] as f32;
+    std::array::from_fn(|column| (1..4).fold(term(0, column), |sum, row| sum + term(row, column)))
 }
 
-fn times(a: Matrix, b: Matrix) -> Matrix {
-    a.map(|row| transform(row, &b))
-}
-
-/// Returns the product of two matrices, rounded to single precision.
+/// Returns the product of two matrices in single precision.
 pub(super) fn product(a: Matrix, b: Matrix) -> Matrix {
-    cut(times(a, b))
+    a.map(|row| in_single(row.map(|value| value as f32), &b).map(f64::from))
+}
+
+/// Returns the inverse of a matrix as the programs compute it: cofactors in double precision, rounded, times the reciprocal of the determinant.
+fn inverse(matrix: &Matrix) -> Matrix {
+    let cofactor = |row: usize, column: usize| {
+        let at = |r: usize, c: usize| matrix[(row + r) % 4][(column + c) % 4];
+        let minor = |r: usize, s: usize| at(r, 2) * at(s, 3) - at(r, 3) * at(s, 2);
+        let determinant = at(1, 1) * minor(2, 3) - at(2, 1) * minor(1, 3) + at(3, 1) * minor(1, 2);
+        if (row + column).is_multiple_of(2) { determinant } else { -determinant }
+    };
+    let determinant: f64 = (0..4).map(|column| matrix[0][column] * cofactor(0, column)).sum();
+    let reciprocal = (1.0 / determinant) as f32;
+    std::array::from_fn(|row| std::array::from_fn(|column| f64::from(cofactor(column, row) as f32 * reciprocal)))
+}
+
+/// Returns the point of the world with the depth `z` that programs find for a place of the screen: between two points of its line of sight.
+pub(super) fn unproject([x, y]: [f32; 2], z: f32, matrix: &Matrix) -> [f32; 4] {
+    let inverse = inverse(matrix);
+    let [near, far] = [0.0, 64000.0].map(|depth| {
+        let [x, y, z, w] = in_single([x, y, depth, 1.0], &inverse);
+        [x / w, y / w, z / w]
+    });
+    let t = (z - near[2]) / (far[2] - near[2]);
+    let [x, y] = [0, 1].map(|k| near[k] + (far[k] - near[k]) * t);
+    [x, y, z, 1.0]
+}
+
+/// Returns the rows of a matrix for column vectors.
+pub(super) fn rows(matrix: &Matrix) -> [[f32; 4]; 4] {
+    std::array::from_fn(|row| std::array::from_fn(|column| matrix[column][row] as f32))
 }
 
 /// Returns a row vector times a matrix.
@@ -66,9 +95,13 @@ pub(super) fn eye() -> Matrix {
 
 /// Transforms a point of the world by the fixed function, which shifts pixels by [`UNPROJECTED`](super::draws::UNPROJECTED).
 pub(super) fn fixed_function(point: [f32; 4]) -> [f32; 4] {
-    let [x, y, z, w] = transform(point.map(f64::from), &product(eye(), window()));
-    let off = f64::from(super::draws::UNPROJECTED);
-    [x / w + off, y / w + off, z / w, w].map(|value| value as f32)
+    fixed_function_to(point, &product(eye(), window()))
+}
+
+/// The same with another matrix from the world to window coordinates.
+pub(super) fn fixed_function_to(point: [f32; 4], matrix: &Matrix) -> [f32; 4] {
+    let off = super::draws::UNPROJECTED;
+    unit::window(unit::transform(&rows(matrix), unit::words(point)), [off, off, 0.0])
 }
 
 /// Sets the depth of a position to 0.
@@ -81,17 +114,9 @@ pub(super) fn flat(point: [f32; 4]) -> [f32; 4] {
     without_depth(fixed_function(point))
 }
 
-/// Truncates a number to single precision.
-pub(super) fn toward_zero(value: f64) -> f32 {
-    let nearest = value as f32;
-    if f64::from(nearest).abs() > value.abs() { f32::from_bits(nearest.to_bits() - 1) } else { nearest }
-}
-
 /// Transforms a point of the world by the programs' vertex program, which multiplies by the reciprocal of w.
 pub(super) fn programmed(point: [f32; 4]) -> [f32; 4] {
-    let [x, y, z, w] = transform(point.map(f64::from), &product(eye(), window())).map(|value| value as f32);
-    let reciprocal = toward_zero(1.0 / f64::from(w));
-    [x * reciprocal, y * reciprocal, z * reciprocal, w]
+    unit::window(unit::transform(&rows(&product(eye(), window())), unit::words(point)), [0.0; 3])
 }
 
 /// Moves edges through the inverse of the programs' vertex program and back. Edges left of and above the centre end up a sixteenth of a pixel before

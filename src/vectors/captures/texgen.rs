@@ -3,6 +3,8 @@
 use super::space::{DEGREES_90, IDENTITY, Matrix, STRAIGHT};
 use super::*;
 use images::gradient;
+use ninebit::number::transform::{product, reciprocal_root, sum};
+use ninebit::vertex::unit;
 
 /// Texture coordinate generation modes, as the names of frames have them.
 const MODES: [&str; 6] = ["Disabled", "EyeLinear", "ObjectLinear", "SphereMap", "NormalMap", "ReflectionMap"];
@@ -39,22 +41,25 @@ fn matrices() -> [(&'static str, Matrix); 11] {
     ]
 }
 
-/// Returns the generated coordinates of a corner at x, y of the world, before the texture matrix. The draws give no normals, so these are zero.
-fn generated(mode: &str, [x, y]: [f64; 2], given: [f64; 2]) -> [f64; 4] {
+/// Returns the generated coordinates of a corner at x, y of the world as the transform unit has them, before the texture matrix. The draws give
+/// no normals, so these are zero.
+fn generated(mode: &str, [x, y]: [f32; 2], [s, t]: [f32; 2]) -> [u32; 4] {
+    let seen = unit::transform(&space::rows(&space::eye()), unit::words([x, y, 0.0, 1.0]));
+    let [one, half] = [1.0_f32, 0.5].map(f32::to_bits);
+    // A zero normal reflects nothing: the reflection is the direction to the vertex.
+    let ([x_seen, y_seen, z_seen], _) = unit::direction([seen[0], seen[1], seen[2]]);
+    let raised = sum([z_seen, one]);
     match mode {
-        "Disabled" => [given[0], given[1], 0.0, 1.0],
-        "EyeLinear" => [x, y, 7.0, 1.0],
-        "ObjectLinear" => [x, y, 0.0, 1.0],
-        "NormalMap" => [0.0, 0.0, 0.0, 1.0],
-        // A zero normal reflects nothing: the reflection is the unit vector to the vertex.
+        "Disabled" => unit::words([s, t, 0.0, 1.0]),
+        "EyeLinear" => seen,
+        "ObjectLinear" => unit::words([x, y, 0.0, 1.0]),
+        "NormalMap" => [0, 0, 0, one],
+        "ReflectionMap" => [x_seen, y_seen, sum([raised, (-1.0_f32).to_bits()]), one],
         _ => {
-            let length = (x * x + y * y + 49.0).sqrt();
-            let [x, y, z] = [x, y, 7.0].map(|value| value / length);
-            if mode == "ReflectionMap" {
-                return [x, y, z, 1.0];
-            }
-            let m = 2.0 * (x * x + y * y + (z + 1.0) * (z + 1.0)).sqrt();
-            [x / m + 0.5, y / m + 0.5, z, 1.0]
+            let r = [x_seen, y_seen, raised];
+            let root = reciprocal_root(unit::dot(r, r));
+            let at = |value| sum([product(product(value, half), root), half]);
+            [at(x_seen), at(y_seen), z_seen, one]
         }
     }
 }
@@ -67,8 +72,11 @@ fn image() -> Texture {
 fn shown(texture: &Texture, [top, bottom]: [f32; 2], mode: &str, matrix: &Matrix) -> Drawn {
     let vertex = |n: usize| {
         let [x, y] = corners([-2.75, top, 2.75, bottom])[n];
-        let made = generated(mode, [x, y].map(f64::from), corners(WHOLE)[n].map(f64::from));
-        let made = matrix.map(|row| row.iter().zip(made).map(|(a, b)| a * b).sum::<f64>()).map(space::toward_zero);
+        let made = unit::transform(
+            &matrix.map(|row| row.map(|value| value as f32)),
+            generated(mode, [x, y], corners(WHOLE)[n]),
+        );
+        let made = made.map(f32::from_bits);
         let [x, y, _, w] = space::fixed_function([x, y, 0.0, 1.0]);
         let diffuse = VertexColor::Bytes([255; 4]);
         Vertex { position: [x, y, 0.0, w], diffuse, texture_coordinates: [made; TEXTURE_UNITS], ..Vertex::default() }

@@ -2,8 +2,9 @@
 //!
 //! INFERRED: the formulas are those of envytools' model of NV10 (`nvhw/pgraph_celsius_xfrm.c`, which its `hwtest` compares
 //! with cards) where that chip has the state, and of xemu and Mesa's nouveau driver for what is new; they agree where they
-//! overlap, unless a comment says so. All numbers are binary32 in the order in which they are written; the chip cuts them,
-//! and its light unit has 14 significant bits.
+//! overlap, unless a comment says so. Positions, eye space and fog coordinates are in the arithmetic of the transform unit
+//! (XFM-1 to XFM-3). Generated coordinates and light are binary32 in the order in which they are written; the chip cuts
+//! the first, and its light unit has 14 significant bits.
 #![allow(clippy::float_arithmetic, reason = "the vertex side is f32 by rule")]
 
 mod light;
@@ -11,11 +12,13 @@ mod read;
 
 use super::{ATTRIBUTES, Attributes, Outputs, attribute};
 use light::{Lighting, Surface};
+use ninebit::number::transform::{SIGN, product, reciprocal, sum};
 use ninebit::state::Profile;
 use ninebit::vertex::point::PointParameters;
 use ninebit::vertex::texgen::CoordinateSet;
-use ninebit::vertex::vector::{dot4, length, unit};
-use ninebit::vertex::{EyeVertex, ModelView, ObjectVertex, Rows, Viewer, transform};
+use ninebit::vertex::unit::{self, words};
+use ninebit::vertex::vector::length;
+use ninebit::vertex::{EyeVertex, ModelView, ObjectVertex, Rows, Viewer};
 
 /// The state of the fixed-function pipe, as a log set it.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,11 +57,11 @@ struct Skin {
 
 impl Skin {
     /// Returns the weight of each matrix.
-    fn weights(self, given: [f32; 4]) -> [f32; 4] {
-        let mut weights = given;
+    fn weights(self, given: [f32; 4]) -> [u32; 4] {
+        let mut weights = words(given);
         if self.completes {
             let last = self.matrices - 1;
-            weights[last] = given[..last].iter().fold(1.0, |left, weight| left - weight);
+            weights[last] = weights[..last].iter().fold(1.0_f32.to_bits(), |left, weight| sum([left, weight ^ SIGN]));
         }
         weights
     }
@@ -91,16 +94,19 @@ struct Eye {
     normal: [f32; 3],
     /// From the vertex to the eye.
     to_eye: [f32; 3],
+    /// The same, of unit length or zero.
+    toward: [f32; 3],
+    distance: f32,
 }
 
 impl FixedFunction {
-    /// Transforms and lights a vertex. The position is in clip space: the caller divides it and adds the
-    /// [`viewport_offset`](Self::viewport_offset).
+    /// Transforms and lights a vertex. The position is that in the window, with w of clip space.
     pub fn run(&self, inputs: &Attributes) -> Outputs {
         let eye = self.eye(inputs);
         let position = if self.skin.is_some() { eye.position } else { inputs[attribute::POSITION] };
         let mut outputs = self.colors(&eye, inputs);
-        outputs.position = transform(&self.composite, position);
+        let [right, down, far, _] = self.viewport_offset;
+        outputs.position = unit::window(unit::transform(&self.composite, words(position)), [right, down, far]);
         outputs.coordinates = self.coordinates(&eye, inputs);
         outputs.fog = self.fog(&eye, inputs);
         outputs.point_size = self.points.map_or(0.0, |points| f32::from(points.size(length(eye.to_eye))) / 8.0);
@@ -124,21 +130,34 @@ impl FixedFunction {
         let weights = inputs[attribute::WEIGHT];
         let position = self.blended(&self.model_view, weights, inputs[attribute::POSITION]);
         let [x, y, z, w] = position;
-        let point = if w == 0.0 { [x, y, z] } else { [x / w, y / w, z / w] };
+        let point = if w == 0 { [x, y, z] } else { [x, y, z].map(|c| product(c, reciprocal(w))) };
         let [x, y, z, _] = inputs[attribute::NORMAL];
         let [x, y, z, _] = self.blended(&self.normal, weights, [x, y, z, 0.0]);
-        let normal = if self.normalizes { unit([x, y, z]) } else { [x, y, z] };
-        Eye { position, point, normal, to_eye: std::array::from_fn(|k| self.eye[k] - point[k]) }
+        let normal = if self.normalizes { unit::direction([x, y, z]).0 } else { [x, y, z] };
+        let to_eye = std::array::from_fn(|k| sum([self.eye[k].to_bits(), point[k] ^ SIGN]));
+        let (toward, distance) = unit::direction(to_eye);
+        let real = |v: [u32; 3]| v.map(f32::from_bits);
+        Eye {
+            position: position.map(f32::from_bits),
+            point: real(point),
+            normal: real(normal),
+            to_eye: real(to_eye),
+            toward: real(toward),
+            distance: f32::from_bits(distance),
+        }
     }
 
     /// Returns the sum of M v with the weight of each matrix M, or the product with the only one.
-    fn blended(&self, matrices: &[Rows], weights: [f32; 4], v: [f32; 4]) -> [f32; 4] {
+    fn blended(&self, matrices: &[Rows], weights: [f32; 4], v: [f32; 4]) -> [u32; 4] {
+        let v = words(v);
         let Some(skin) = self.skin else {
-            return matrices.first().map_or([0.0; 4], |matrix| transform(matrix, v));
+            return matrices.first().map_or([0; 4], |matrix| unit::transform(matrix, v));
         };
-        let products =
-            matrices.iter().zip(skin.weights(weights)).map(|(matrix, w)| transform(matrix, v).map(|c| c * w));
-        products.fold([0.0; 4], |sum, product| std::array::from_fn(|k| sum[k] + product[k]))
+        let weighted = matrices
+            .iter()
+            .zip(skin.weights(weights))
+            .map(|(matrix, weight)| unit::transform(matrix, v).map(|c| product(c, weight)));
+        weighted.fold([0; 4], |total, part| std::array::from_fn(|k| sum([total[k], part[k]])))
     }
 
     fn coordinates(&self, eye: &Eye, inputs: &Attributes) -> [[f32; 4]; 4] {
@@ -169,9 +188,9 @@ impl FixedFunction {
             None => 0.0,
             // INFERRED, from xemu: limited to 0 to 1.
             Some(Fog::SpecularAlpha) => inputs[attribute::SPECULAR][3].clamp(0.0, 1.0),
-            Some(Fog::Radial) => length(eye.to_eye),
+            Some(Fog::Radial) => eye.distance,
             Some(Fog::Planar { plane, absolute }) => {
-                let distance = dot4([x, y, z, 1.0], plane);
+                let distance = f32::from_bits(unit::dot(words([x, y, z, 1.0]), words(plane)));
                 if absolute { distance.abs() } else { distance }
             }
             Some(Fog::Vertex) => inputs[attribute::FOG][0],
@@ -194,7 +213,7 @@ impl FixedFunction {
             let surface = Surface {
                 point: eye.point,
                 normal: eye.normal,
-                to_eye: unit(eye.to_eye),
+                to_eye: eye.toward,
                 diffuse: outputs.diffuse,
                 specular: outputs.specular,
             };

@@ -67,6 +67,11 @@ fn at(position: [f32; 3], normal: [f32; 3]) -> Attributes {
     vertex
 }
 
+/// The window position of a point in clip space (XFM-3).
+fn window(clip: [f32; 4]) -> [f32; 4] {
+    unit::window(words(clip), [320.0, 240.0, 0.0])
+}
+
 fn near(a: [f32; 4], b: [f32; 4]) {
     assert!((0..4).all(|k| (a[k] - b[k]).abs() < 1e-6), "{a:?} {b:?}");
 }
@@ -78,7 +83,7 @@ fn identity() {
     let inputs = vertex();
     let outputs = log.run(&inputs);
     assert_eq!(log.read().viewport_offset, [320.0, 240.0, 0.0, 0.0]);
-    assert_eq!([outputs.position, outputs.diffuse, outputs.specular], [inputs[0], inputs[3], inputs[4]]);
+    assert_eq!([outputs.position, outputs.diffuse, outputs.specular], [window(inputs[0]), inputs[3], inputs[4]]);
     assert_eq!([outputs.back_diffuse, outputs.back_specular], [inputs[7], inputs[8]]);
     assert_eq!(outputs.coordinates, [inputs[9], inputs[10], inputs[11], inputs[12]]);
     // Without the bit alpha of the secondary colour is 1, and without specular light the colour is black.
@@ -91,7 +96,7 @@ fn identity() {
 fn rows_multiply_columns() {
     let mut log = Log::new();
     log.floats(0x0680, &[2.0, 0.0, 0.0, 5.0]).floats(0x06b0, &[0.0, 0.0, 1.0, 0.0]);
-    assert_eq!(log.run(&at([1.0, 2.0, 3.0], [0.0; 3])).position, [7.0, 2.0, 3.0, 3.0]);
+    assert_eq!(log.run(&at([1.0, 2.0, 3.0], [0.0; 3])).position, window([7.0, 2.0, 3.0, 3.0]));
 }
 
 /// Words are asked for only if what is enabled needs them.
@@ -301,11 +306,11 @@ fn skinning_with_two_weights() {
     let mut inputs = at([1.0, 2.0, 3.0], [0.0; 3]);
     inputs[1] = [0.25, 0.5, 0.0, 1.0];
     // The other weight is 0.75.
-    assert_eq!(log.run(&inputs).position, [8.5, 2.0, 3.0, 1.0]);
+    assert_eq!(log.run(&inputs).position, window([8.5, 2.0, 3.0, 1.0]));
     // Both are given, and do not make 1.
-    assert_eq!(log.word(0x0328, 2).run(&inputs).position, [5.75, 1.5, 2.25, 0.75]);
+    assert_eq!(log.word(0x0328, 2).run(&inputs).position, window([5.75, 1.5, 2.25, 0.75]));
     // Three matrices, of which the last has the rest.
-    assert_eq!(log.word(0x0328, 3).floats(0x0500, &moved).run(&inputs).position, [8.5, 2.0, 3.0, 1.0]);
+    assert_eq!(log.word(0x0328, 3).floats(0x0500, &moved).run(&inputs).position, window([8.5, 2.0, 3.0, 1.0]));
 }
 
 #[test]
@@ -319,7 +324,7 @@ fn fog_coordinates() {
     inputs[4][3] = 1.5;
     inputs[5][0] = 0.625;
     let mut of = |mode: u32| log.word(0x02a0, mode).run(&inputs).fog;
-    assert_eq!([of(0), of(1), of(2), of(3), of(6)], [1.0, 5.0, -2.0, 2.0, 0.625]);
+    assert_eq!([of(0), of(1), of(2), of(3), of(6)], [1.0, 4.9999995, -2.0, 2.0, 0.625]);
 }
 
 #[test]

@@ -1,71 +1,9 @@
-//! The functions of the scalar unit: reciprocals, powers of two, logarithms, lighting.
+//! The functions of the scalar unit that have tables of their own: powers of two, logarithms, lighting.
 //!
-//! INFERRED, and from the source that [`arithmetic`](super::arithmetic) names. The numbers in the tables are the chip's.
+//! INFERRED, and from the source that [`transform`](ninebit::number::transform) names. The numbers in the tables are the chip's.
 
-use super::arithmetic::*;
 use super::tables::*;
-
-/// Returns 1/x by two steps of Newton's method from a table. Of zero it is infinity.
-pub(super) fn reciprocal(x: u32) -> u32 {
-    match x {
-        _ if is_nan(x) => NAN,
-        _ if is_zero(x) => x & SIGN | INFINITY,
-        _ => {
-            let (exponent, fraction) = reciprocal_parts(x);
-            finite(x & SIGN, exponent, LEADING | fraction)
-        }
-    }
-}
-
-/// Returns 1/x, whose magnitude is limited to 2^-64 to 2^64.
-pub(super) fn limited_reciprocal(x: u32) -> u32 {
-    if is_nan(x) {
-        return NAN;
-    }
-    const SMALLEST: i32 = BIAS - 64;
-    const LARGEST: i32 = BIAS + 64;
-    let (exponent, fraction) = match reciprocal_parts(x) {
-        (..SMALLEST, _) => (SMALLEST, 0),
-        (LARGEST.., _) => (LARGEST, 0),
-        parts => parts,
-    };
-    x & SIGN | (exponent as u32) << 23 | fraction
-}
-
-/// Returns the exponent field, perhaps outside of its range, and the fraction of 1/x.
-fn reciprocal_parts(x: u32) -> (i32, u32) {
-    let exponent = 2 * BIAS - exponent(x);
-    let fraction = fraction(x);
-    if fraction == 0 {
-        return (exponent, 0);
-    }
-    let mantissa = u64::from(fraction | LEADING);
-    let first = u64::from(RECIPROCALS[(fraction >> 17) as usize & 63]);
-    let second = (((1 << 31) - first * mantissa) * first) >> 24;
-    let third = (((1 << 37) - second * mantissa) * second) >> 25;
-    (exponent - 1, third as u32 & (LEADING - 1))
-}
-
-/// Returns 1/sqrt |x| by two steps of Newton's method from a table. Of zero it is infinity.
-pub(super) fn reciprocal_root(x: u32) -> u32 {
-    if is_nan(x) {
-        return NAN;
-    }
-    if is_zero(x) {
-        return INFINITY;
-    }
-    if is_infinite(x) {
-        return 0;
-    }
-    // The mantissa is in [1, 2) for even powers of two, in [2, 4) for odd ones.
-    let odd = exponent(x) & 1 == 0;
-    let half = (exponent(x) - BIAS - i32::from(odd)) / 2;
-    let mantissa = u64::from(fraction(x) | LEADING) << u32::from(odd);
-    let first = u64::from(ROOTS[usize::from(odd) << 6 | (fraction(x) >> 17) as usize]);
-    let second = (((3 << 37) - first * first * mantissa) * first) >> 32;
-    let third = (((3 << 49) - second * second * mantissa) * second) >> 39;
-    finite(0, BIAS - half - 1, third as u32)
-}
+use ninebit::number::transform::*;
 
 /// Number of bits after the point of a power's exponent.
 const POINT: u32 = 13;
@@ -211,41 +149,6 @@ mod tests {
         f64::from(f32::from_bits(x))
     }
 
-    /// All mantissas: the last step is never out of range, and is off by at most two units of the last place.
-    #[test]
-    fn reciprocals_of_all_mantissas() {
-        for fraction in 0..LEADING {
-            let x = ONE | fraction;
-            let error = real(reciprocal(x)) * real(x) - 1.0;
-            assert!(error.abs() < 2.0_f64.powi(-22), "{x:08x}");
-            assert_eq!(limited_reciprocal(x), reciprocal(x));
-        }
-    }
-
-    /// All mantissas of even and odd powers of two.
-    #[test]
-    fn roots_of_all_mantissas() {
-        for fraction in 0..2 * LEADING {
-            let x = ONE + fraction;
-            let error = real(reciprocal_root(x)).powi(2) * real(x) - 1.0;
-            assert!(error.abs() < 2.0_f64.powi(-20), "{x:08x}");
-        }
-        assert_eq!(reciprocal_root(SIGN | 0x4080_0000), 0x3f00_0000 - 1);
-    }
-
-    #[test]
-    fn reciprocals_keep_within_their_range() {
-        let powers = [-126, -100, -64, 0, 63, 64, 65, 127].map(|power| 2.0_f32.powi(power));
-        let limited = powers.map(|x| f32::from_bits(limited_reciprocal(x.to_bits())));
-        let [small, large] = [2.0_f32.powi(-64), 2.0_f32.powi(64)];
-        assert_eq!(limited, [large, large, large, 1.0, 2.0 * small, small, small, small]);
-        let free = powers.map(|x| f32::from_bits(reciprocal(x.to_bits())));
-        // 2^-127 would be a denormal.
-        assert_eq!(free[..7], powers.map(|x| 1.0 / x)[..7]);
-        assert_eq!((free[7], reciprocal(INFINITY), reciprocal(SIGN | INFINITY)), (0.0, 0, SIGN));
-        assert_eq!([reciprocal(0x7fc0_0000), limited_reciprocal(NAN), reciprocal_root(NAN)], [NAN; 3]);
-    }
-
     /// Lines have eleven bits.
     #[test]
     fn powers_and_logarithms() {
@@ -276,7 +179,7 @@ mod tests {
         for _ in 0..100_000 {
             let x: [u32; 4] = random.words();
             let ([floor, _, power, _], lit) = (exponential(x[0]), lighting(x)[2]);
-            for result in [reciprocal(x[0]), limited_reciprocal(x[0]), reciprocal_root(x[0]), floor, power, lit] {
+            for result in [floor, power, lit] {
                 assert!(result & !SIGN == 0 || !is_zero(result) && (result == NAN || !is_nan(result)), "{result:08x}");
             }
             if !is_nan(x[0]) {

@@ -2,10 +2,9 @@
 //!
 //! The vector unit (MAC) and the scalar unit (ILU) of a slot read their operands before either writes. The fields of the
 //! words are those of nxdk's and envytools' documents and of abaire's nv2a_vsh_asm, which agree. INFERRED: what the units
-//! compute (`arithmetic.rs`, `function.rs`), and from xemu that a scalar unit in company writes only R1, and a vector unit in
+//! compute (`ninebit::number::transform`, `function.rs`), and from xemu that a scalar unit in company writes only R1, and a vector unit in
 //! company never R1.
 
-mod arithmetic;
 mod encoding;
 mod function;
 mod instruction;

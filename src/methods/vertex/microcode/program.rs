@@ -1,10 +1,10 @@
 //! Runs programs.
 
-use super::arithmetic::*;
 use super::function::*;
 use super::instruction::*;
 use super::{CONSTANTS, SLOTS, Slot, TEMPORARIES, decode};
 use crate::vertex::{Attributes, DEFAULT, Outputs, attribute};
+use ninebit::number::transform::*;
 
 /// The values of all constants.
 pub type Constants = [[f32; 4]; CONSTANTS];

@@ -1,26 +1,4 @@
-//! The tables of the scalar unit, as read off NV20 cards by the source that [`arithmetic`](super::arithmetic) names.
-
-/// First guesses of 128 / m for a mantissa m in [1, 2), in steps of 1/64.
-#[rustfmt::skip]
-pub(super) const RECIPROCALS: [u8; 64] = [
-    127, 125, 123, 121, 120, 118, 116, 115, 113, 111, 110, 109, 107, 106, 104, 103,
-    102, 101, 99, 98, 97, 96, 95, 94, 93, 92, 91, 90, 89, 88, 87, 86,
-    85, 84, 83, 82, 82, 81, 80, 79, 78, 78, 77, 76, 76, 75, 74, 73,
-    73, 72, 72, 71, 70, 70, 69, 69, 68, 67, 67, 66, 66, 65, 65, 64,
-];
-
-/// First guesses of 128 / sqrt m, for m in [1, 2) in steps of 1/64, then in [2, 4) in steps of 1/32.
-#[rustfmt::skip]
-pub(super) const ROOTS: [u8; 128] = [
-    127, 127, 126, 125, 124, 123, 122, 121, 120, 119, 119, 118, 117, 116, 116, 115,
-    114, 113, 113, 112, 111, 111, 110, 109, 109, 108, 108, 107, 106, 106, 105, 105,
-    104, 104, 103, 103, 102, 102, 101, 101, 100, 100, 99, 99, 98, 98, 97, 97,
-    97, 96, 96, 95, 95, 94, 94, 94, 93, 93, 93, 92, 92, 91, 91, 91,
-    90, 89, 89, 88, 87, 87, 86, 86, 85, 84, 84, 83, 83, 82, 82, 81,
-    81, 80, 80, 79, 79, 78, 78, 77, 77, 77, 76, 76, 75, 75, 74, 74,
-    74, 73, 73, 73, 72, 72, 72, 71, 71, 70, 70, 70, 70, 69, 69, 69,
-    68, 68, 68, 67, 67, 67, 67, 66, 66, 66, 65, 65, 65, 65, 64, 64,
-];
+//! The tables of the scalar unit, as read off NV20 cards by the source that [`transform`](ninebit::number::transform) names.
 
 /// Lines for (2^f - 1) 2^14, each over 1/32 of f: where it starts, and its slope over 256 parts.
 #[rustfmt::skip]
