@@ -137,8 +137,7 @@ impl Check<'_> {
                 let what = format!("the depth buffer of target `{name}` begins with");
                 match depth.map(|depth| depth.format) {
                     Some(format) => {
-                        let bits = if format.has_stencil() { 32 } else { format.bits() };
-                        self.contents(target, words, (&what, "DEP-2"), (bits, format.name()));
+                        self.contents(target, words, (&what, "DEP-2"), (format.stored_bits(), format.name()));
                     }
                     None => {
                         let message = format!("target `{name}` has contents of a depth buffer, and no depth buffer");

@@ -423,7 +423,7 @@ fn summed(plan: &Plan, options: &CompareOptions, outcome: Outcome) -> Comparison
         parts,
         unexplained: if mode == Mode::Follow { outcome.unexplained } else { 0.0 },
         rules: rules
-            .map(|(errors, rule)| RuleError { rule: *rule, errors: *errors, bound: bound::of(*rule, plan) })
+            .map(|(errors, rule)| RuleError { rule: *rule, errors: *errors, bound: bound::error_range(*rule, plan) })
             .collect(),
         decisions: decisions
             .map(|([taken, differing], decision)| Decided { decision: *decision, taken: *taken, differing: *differing })
