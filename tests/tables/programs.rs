@@ -130,3 +130,29 @@ fn words_of_the_grammar_are_read() {
         assert!(sources.contains(&format!("\"{word}")) || sources.contains(&format!("{word}\"")), "{word}");
     }
 }
+
+/// Tables of bits have every field of the layout, each within a row.
+#[test]
+fn bits_of_words_are_those_of_the_layout() {
+    use ninebit::state::Profile;
+    use ninebit_program::registers::layout::{self, Field};
+    let output = [layout::OUTPUTS.as_slice(), &layout::DOT_PRODUCTS, &layout::BLUE_TO_ALPHA].concat();
+    let config = [layout::mux_by_msb(Profile::Nv10), layout::stages(Profile::Nv10)];
+    let output = [output, vec![layout::MUX, layout::OPERATION], config.to_vec()].concat();
+    for (table, fields) in
+        [("bits of inputs", vec![layout::REGISTER, layout::ALPHA, layout::MAPPING]), ("bits of outputs", output)]
+    {
+        let bits = |part: &str| {
+            let (first, last) = part.split_once(" to ").unwrap_or((part, part));
+            first.parse::<u32>().unwrap()..=last.parse::<u32>().unwrap()
+        };
+        let rows = rows("docs/languages/registers.md", table);
+        let listed: Vec<BTreeSet<u32>> = rows.iter().map(|row| row[0].split(", ").flat_map(bits).collect()).collect();
+        let inside = |field: &Field| (field.shift..field.shift + field.bits).collect::<BTreeSet<u32>>();
+        for field in &fields {
+            assert!(listed.iter().any(|row| row.is_superset(&inside(field))), "{table}: {field:?}");
+        }
+        let all: BTreeSet<u32> = fields.iter().flat_map(inside).collect();
+        assert_eq!(listed.into_iter().flatten().collect::<BTreeSet<u32>>(), all, "{table}");
+    }
+}
