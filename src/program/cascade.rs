@@ -362,7 +362,6 @@ impl Cascade {
         CombinerInput { register: value.register, component, mapping }
     }
 
-    /// Returns the register of a constant.
     fn constant(&mut self, color: [u8; 4], span: &Span) -> Register {
         let found = self.constants.iter().position(|constant| *constant == color);
         let index = found.unwrap_or_else(|| {

@@ -198,7 +198,6 @@ fn whole(
     })
 }
 
-/// Plans a scene.
 fn compiled(scene: &Scene, options: PlanOptions) -> Result<Plan, Failure> {
     Plan::compile(scene, &options).map_err(|errors| {
         let message = errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");

@@ -45,7 +45,6 @@ pub(crate) struct Arguments {
     expected: Option<PathBuf>,
 }
 
-/// A requested report.
 #[derive(Clone, Debug)]
 enum ReportRequest {
     /// Annotations and a step summary for GitHub Actions.

@@ -132,7 +132,6 @@ pub(super) struct Draw<'a, L> {
 
 /// Evaluation of the definition and the ideal in one mode.
 pub(super) trait Method {
-    /// Lane of the ideal.
     type Lane: Lane + Send + Sync;
 
     /// Draws the part of a draw that lies in a band.

@@ -9,7 +9,6 @@ use ninebit_program::Spanned;
 use ninebit_program::texture_environment::{self as environment, BaseFormat, TextureEnvironment};
 use ninebit_program::texture_stages::{self as stages, TextureStages};
 
-/// A program of an API.
 pub(super) enum ApiProgram {
     /// Texture stages of Direct3D, and the text they were written in, if any.
     Stages(TextureStages, Option<ProgramText>),

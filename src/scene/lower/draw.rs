@@ -236,7 +236,6 @@ fn edge_flags<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, Vec<u32>>>, coun
     Some(flags.into())
 }
 
-/// Reads the scissor of a draw.
 fn scissor<'a>(reader: &mut Reader<'a>, target: Option<usize>, fields: &source::Draw<'a>) -> Option<Rectangle> {
     let (raw, target) = (fields.scissor.as_ref()?, reader.targets.list.get(target?)?.clone());
     raster::clip(reader, &target, "scissor", raw)

@@ -103,7 +103,6 @@ pub(super) fn in_file(reader: &mut Reader<'_>, path: &Path, language: ProgramLan
     (reader.errors == errors).then_some(Program { form, asides })
 }
 
-/// Reads a program from its text.
 fn written(reader: &mut Reader<'_>, language: ProgramLanguage, text: ProgramText, asides: &mut Asides) -> Option<Form> {
     Some(match language {
         ProgramLanguage::Combiners => {

@@ -5,6 +5,7 @@ use super::texture_source::{Request, SourceTexels, Variant, only};
 use super::*;
 use crate::names::{Index, Textures};
 use crate::reader::Entry;
+use ninebit::legality;
 use ninebit::rop::surface;
 
 impl Textures {
@@ -106,7 +107,7 @@ fn texture<'a>(reader: &mut Reader<'a>, entry: &Entry<'a, source::Texture<'a>>) 
     };
     match &fields.palette {
         Some(raw) if texture.format != TextureFormat::P8 => {
-            reader.refuse(palette::not_read(reader.span(raw), texture.format))
+            reader.refuse(legality::texture::unread_palette(texture.format, Some(reader.span(raw))))
         }
         // What is wrong with the palette itself has been recorded.
         Some(_) if palette.is_none() => None,
