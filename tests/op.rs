@@ -60,7 +60,7 @@ fn open_rules_that_would_change_a_result_are_named() {
 #[test]
 fn rows_of_packs_are_cases() {
     let bench = Bench::new();
-    let table = crate::repository::at("vectors/packs/nv2a/units/general-stage.tsv");
+    let table = crate::repository::at("vectors/packs/nv2a/general-stage.tsv");
     let table = table.to_str().unwrap();
     let text = bench.run(&format!("op unit general-stage --inputs {table}")).text();
     let mut lines = text.lines();
@@ -76,7 +76,7 @@ fn rows_of_packs_are_cases() {
             }
         }
     }
-    assert!(rows > 900 && names.contains(&"result.out.ab.r"), "{rows} rows, {names:?}");
+    assert!(rows >= 100 && names.contains(&"result.out.ab.r"), "{rows} rows, {names:?}");
     bench.run(&format!("op unit sum --inputs {table}")).failed(3, "is of unit general-stage, not sum");
     let other = bench.run(&format!("op unit general-stage --profile nv10 --inputs {table}"));
     other.failed(3, "is of profile Nv2a, not Nv10\n  help: `--profile` chooses the chip");

@@ -72,10 +72,10 @@ fn forms_of_json_are_on_the_page() {
     let page = std::fs::read_to_string(at("docs/commands.md")).unwrap();
     let (_, table) = page.split_once("<!-- held by tests/rule.rs: begin -->").unwrap();
     let (table, _) = table.split_once("<!-- held by tests/rule.rs: end -->").unwrap();
-    let pack = at("vectors/packs/nv2a");
-    let mux = std::fs::read_to_string(pack.join("units/mux.tsv")).unwrap();
+    let unit_table = at("vectors/packs/nv2a/mux.tsv");
+    let mux = std::fs::read_to_string(&unit_table).unwrap();
     let (row, _) = mux.lines().last().unwrap().split_once('\t').unwrap();
-    let show = format!("vectors show {} {row}", pack.display());
+    let show = format!("vectors show {} {row}", unit_table.display());
     let mut rows = 0;
     for (command, list) in [("rule", "rules"), (show.as_str(), ""), ("op unit mux --columns", "columns")] {
         let document: Value = serde_json::from_str(&bench.run(&format!("{command} --format json")).text()).unwrap();

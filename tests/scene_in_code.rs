@@ -121,10 +121,10 @@ const CASES: &[Case] = &[
     ("target `frame` clears a stencil that Z16 does not have", |s| {
         s.targets[0].depth = Some(DepthBuffer { format: DepthFormat::Z16, clear: 0, clear_stencil: 1 });
     }),
-    ("the window clip has 0 rectangles", |s| {
+    ("a window clip has 1 to 8 rectangles, not 0", |s| {
         s.draws[0].window_clip = Some(WindowClip { rectangles: vec![], exclusive: false });
     }),
-    ("the window clip has 9 rectangles", |s| {
+    ("a window clip has 1 to 8 rectangles, not 9", |s| {
         let rectangle = Rectangle { x: 0, y: 0, width: 1, height: 1 };
         s.draws[0].window_clip = Some(WindowClip { rectangles: vec![rectangle; 9], exclusive: true });
     }),
@@ -197,8 +197,8 @@ const CASES: &[Case] = &[
             (Bias::NegativeHalf, Scale::Four);
     }),
     ("unit 0 samples texture 99 of 2", |s| unit(s).texture = 99),
-    ("texture `grey` of format A8R8G8B8 reads no palette", |s| unit(s).palette = Some(0)),
-    ("is of format P8, and unit 0 has no palette", |s| {
+    ("texture `grey`: a texture of format A8R8G8B8 reads no palette", |s| unit(s).palette = Some(0)),
+    ("the texture `grey` is of format P8 and has no palette", |s| {
         (s.textures[0].format, texels(s).words) = (TextureFormat::P8, vec![1; 16].into());
     }),
     ("unit 0 reads palette 4 of 1", |s| {
@@ -214,8 +214,8 @@ const CASES: &[Case] = &[
     ("stage 2 takes coordinate set 18446744073709551615", |s| {
         s.draws[0].texture_shader[2].coordinate_set = u64::MAX as usize;
     }),
-    ("stage 1 reads unit 1", |s| s.draws[0].texture_shader[1].previous = 1),
-    ("stage 3 reads unit 99", |s| s.draws[0].texture_shader[3].previous = 99),
+    ("stage 1 cannot read unit 1", |s| s.draws[0].texture_shader[1].previous = 1),
+    ("stage 3 cannot read unit 99", |s| s.draws[0].texture_shader[3].previous = 99),
     ("stage 1 samples, but its unit has no texture", |s| {
         s.draws[0].texture_shader[1].operation = ShaderOperation::DependentAlphaRed;
     }),
@@ -229,11 +229,11 @@ const CASES: &[Case] = &[
         let matrix = [0.0, f32::NAN, 0.0, 0.0];
         s.draws[0].texture_shader[1].operation = ShaderOperation::BumpEnvironment { matrix, luminance: None };
     }),
-    ("target `frame` has no depth buffer", |s| {
+    ("target \"frame\" has no depth buffer", |s| {
         s.targets[0].depth = None;
         s.draws[0].depth_test = Some(DepthTest::new(CompareFunction::Less, true));
     }),
-    ("target `frame` has no stencil", |s| {
+    ("target \"frame\" has no stencil", |s| {
         s.targets[0].depth = Some(DepthBuffer { format: DepthFormat::Z16, clear: 0, clear_stencil: 0 });
         s.draws[0].stencil_test = Some(STENCIL_TEST);
     }),
@@ -269,7 +269,7 @@ const CASES_OF_NV10: &[Case] = &[
     }),
     ("a border colour does not exist on Nv10", |s| unit(s).address_s = AddressMode::ClampToBorder),
     ("a signed texture channel does not exist on Nv10", |s| unit(s).signed[3] = true),
-    ("is addressed with another mode than ClampToEdge", |s| s.textures[0].kind = TextureKind::Rectangle),
+    ("a rectangle texture cannot be addressed with", |s| s.textures[0].kind = TextureKind::Rectangle),
     ("blend equation SignedAdd does not exist on Nv10", |s| {
         let (source, destination) = (BlendFactor::One, BlendFactor::One);
         s.draws[0].blend = Some(Blend { equation: BlendEquation::SignedAdd, source, destination });

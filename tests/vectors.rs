@@ -2,7 +2,6 @@
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by panicking")]
 
 use crate::bench;
-use crate::repository::at;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -362,8 +361,8 @@ fn packed_rows_are_the_rows() {
 #[test]
 fn a_row_is_shown_as_a_trace() {
     let bench = bench::Bench::new();
-    let pack = at("vectors/packs/nv2a");
-    let (pack, table) = (pack.to_str().unwrap(), pack.join("units/scale-bias.tsv"));
+    bench.run("vectors export --unit scale-bias --unit general-stage -o pack").data();
+    let (pack, table) = ("pack", bench.path("pack/units/scale-bias.tsv"));
     let text = std::fs::read_to_string(&table).unwrap();
     let (line, row) = (1..).zip(text.lines()).find(|(_, line)| line.contains("policy:CMB-9")).unwrap();
     let id = row.split('\t').next().unwrap();
@@ -378,7 +377,7 @@ fn a_row_is_shown_as_a_trace() {
     ] {
         assert!(shown.contains(part), "{part}: {shown}");
     }
-    let stage = std::fs::read_to_string(at("vectors/packs/nv2a/units/general-stage.tsv")).unwrap();
+    let stage = std::fs::read_to_string(bench.path("pack/units/general-stage.tsv")).unwrap();
     let stage = stage.lines().last().unwrap().split('\t').next().unwrap().to_uppercase();
     assert!(bench.run(&format!("vectors show {pack} {stage}")).text().contains("stage0.rgb.AB.r"));
     let document = bench.run(&format!("vectors show {} {id} --format json", table.to_str().unwrap())).text();

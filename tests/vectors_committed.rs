@@ -2,12 +2,14 @@
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by panicking")]
 
 use crate::repository::at;
-use std::collections::BTreeSet;
+use crate::settings::bless;
+use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 use ninebit::state::{Named, Policies, Profile};
 use ninebit_vectors::cases::{self, Level};
-use ninebit_vectors::pack::{self, Options};
+use ninebit_vectors::pack::{self, Manifest, Options};
 use ninebit_vectors::unit::Conditions;
 use ninebit_vectors::view::View;
 use ninebit_vectors::{Unit, exhaustive::Exhaustive, tree, units};
@@ -15,35 +17,6 @@ use serde_json::Value;
 
 fn json(path: impl AsRef<Path>) -> Value {
     serde_json::from_str(&std::fs::read_to_string(at(path)).unwrap()).unwrap()
-}
-
-/// The packs are byte for byte what an export writes: all units of nv2a, and for nv10 its own and those in which it differs.
-#[test]
-fn committed_packs_are_what_the_model_says() {
-    let folder = tempfile::tempdir().unwrap();
-    for profile in Profile::ALL {
-        let name = profile.name().to_lowercase();
-        let committed = at("vectors/packs").join(&name);
-        let manifest = pack::manifest(&committed).unwrap();
-        let mut chosen: Vec<_> = manifest.files.iter().filter_map(|file| units::by_name(&file.unit)).collect();
-        chosen.dedup_by_key(|unit| unit.name());
-        if *profile == Profile::Nv2a {
-            let all = units::all().into_iter().filter(|unit| unit.profiles().contains(profile));
-            assert_eq!(chosen.len(), all.count());
-        }
-        let options =
-            Options { profile: *profile, level: Level::L0, seed: 1, units: chosen, deciding: false, views: vec![] };
-        let fresh = folder.path().join(&name);
-        let again = pack::export(&fresh, &options).unwrap();
-        for (file, committed_file) in again.files.iter().zip(&manifest.files) {
-            let help = "export it again as docs/vectors.md says, and say why under Numerics in CHANGELOG.md";
-            assert_eq!(file, committed_file, "{name}: {help}");
-        }
-        assert_eq!(again, manifest);
-        let (_, tables) = pack::open(&committed).unwrap();
-        assert!(tables.iter().all(|table| table.is_current()));
-        assert!(manifest.files.iter().all(|file| file.bytes < 1_000_000));
-    }
 }
 
 /// Returns the rows of a unit on a chip, with inputs and results.
@@ -58,17 +31,77 @@ fn rows(profile: Profile, unit: &'static dyn ninebit_vectors::Unit) -> Vec<Vec<i
     rows
 }
 
-#[test]
-fn the_pack_of_nv10_has_the_units_that_differ_or_are_its_own() {
-    let manifest = pack::manifest(&at("vectors/packs/nv10")).unwrap();
-    let committed: BTreeSet<&str> =
-        manifest.files.iter().map(|file| file.unit.as_str()).filter(|unit| !unit.is_empty()).collect();
+/// Returns the units of a committed pack: all of nv2a; of nv10 its own and those whose rows differ.
+fn committed_units(profile: Profile) -> Vec<&'static dyn Unit> {
     let has = |unit: &dyn Unit, profile| unit.profiles().contains(&profile);
     let differs =
         |unit: &'static dyn Unit| !has(unit, Profile::Nv2a) || rows(Profile::Nv10, unit) != rows(Profile::Nv2a, unit);
-    let of_nv10 = units::all().into_iter().filter(|unit| has(*unit, Profile::Nv10));
-    let different: BTreeSet<&str> = of_nv10.filter(|unit| differs(*unit)).map(|unit| unit.name()).collect();
-    assert_eq!(committed, different);
+    let units = units::all().into_iter().filter(|unit| has(*unit, profile));
+    units.filter(|unit| profile == Profile::Nv2a || differs(*unit)).collect()
+}
+
+/// Returns the lines of a table that are committed: the head, every tenth row, and the regressions.
+fn sample(table: &str) -> String {
+    let (head, rows): (Vec<&str>, Vec<&str>) =
+        table.split_inclusive('\n').partition(|line| line.starts_with('#') || line.starts_with("id\t"));
+    let rows = rows.into_iter().enumerate().filter(|(n, row)| n % 10 == 0 || row.contains("\tregression"));
+    head.into_iter().chain(rows.map(|(_, row)| row)).collect()
+}
+
+/// The packs of the model are those of the committed manifests, and have the committed rows. `BLESS=1` writes both: say why under *Numerics* in
+/// CHANGELOG.md.
+#[test]
+fn committed_packs_are_what_the_model_says() {
+    let folder = tempfile::tempdir().unwrap();
+    for profile in Profile::ALL {
+        let name = profile.name().to_lowercase();
+        let (manifest_file, samples) = (at(format!("vectors/packs/{name}.json")), at(format!("vectors/packs/{name}")));
+        let units = committed_units(*profile);
+        let options = Options { profile: *profile, level: Level::L0, seed: 1, units, deciding: false, views: vec![] };
+        let fresh = folder.path().join(&name);
+        let again = pack::export(&fresh, &options).unwrap();
+        let tables: Vec<(String, String)> = again
+            .files
+            .iter()
+            .filter(|file| !file.unit.is_empty())
+            .map(|file| (format!("{}.tsv", file.unit), sample(&fs::read_to_string(fresh.join(&file.path)).unwrap())))
+            .collect();
+        if bless() {
+            fs::remove_dir_all(&samples).unwrap();
+            fs::create_dir(&samples).unwrap();
+            tables.iter().for_each(|(file, rows)| fs::write(samples.join(file), rows).unwrap());
+            fs::copy(fresh.join("MANIFEST.json"), &manifest_file).unwrap();
+        }
+        let manifest: Manifest = serde_json::from_value(json(&manifest_file)).unwrap();
+        for (file, committed_file) in again.files.iter().zip(&manifest.files) {
+            assert_eq!(file, committed_file, "{name}: BLESS=1 writes it; `ninebit vectors diff` shows the rows");
+        }
+        assert_eq!(again, manifest);
+        for (file, rows) in &tables {
+            assert_eq!(*rows, fs::read_to_string(samples.join(file)).unwrap(), "{name}/{file}");
+        }
+        assert_eq!(fs::read_dir(samples).unwrap().count(), tables.len());
+    }
+}
+
+/// The repository's files are at most 30 MB: a clone takes seconds, and generated bulk is noticed.
+#[test]
+fn the_repository_is_small() {
+    const LARGEST: u64 = 30_000_000;
+    let listed = Command::new("git").args(["ls-files", "-z"]).current_dir(at("")).output();
+    let Some(listed) = listed.ok().filter(|output| output.status.success()) else {
+        println!("skipped: there is no git, or this is no checkout");
+        return;
+    };
+    let paths = String::from_utf8(listed.stdout).unwrap();
+    let mut sizes: Vec<(u64, &str)> = paths
+        .split_terminator('\0')
+        .filter_map(|path| Some((fs::symlink_metadata(at(path)).ok()?.len(), path)))
+        .collect();
+    sizes.sort_unstable_by(|a, b| b.cmp(a));
+    let sum: u64 = sizes.iter().map(|(bytes, _)| bytes).sum();
+    assert!(sum > 1_000_000, "{sum} bytes in {} files", sizes.len());
+    assert!(sum <= LARGEST, "{sum} bytes, {LARGEST} are allowed; the largest: {:?}", &sizes[..10]);
 }
 
 /// Checks that a document has exactly the properties of its schema, on every level.

@@ -47,7 +47,6 @@ fn place(path: &Path) -> Option<PathBuf> {
     }
 }
 
-/// Returns the folder that a path is in.
 pub(crate) fn folder_around(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }

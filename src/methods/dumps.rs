@@ -15,19 +15,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use ninebit::limits::{MEMORY_IMAGE, PAGE};
+use ninebit::state::Buffer;
 use ninebit_files::read::{self, Kind, ReadError};
 
 /// The log among the dumps.
 pub const LOG_FILE: &str = "nv2a_log.txt";
-
-/// A buffer of a surface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Buffer {
-    /// Colours.
-    Color,
-    /// Depths and stencils.
-    Depth,
-}
 
 /// A file with the name of a dump.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -118,11 +110,6 @@ impl Dumps {
         }
         dumps.textures.values_mut().for_each(|names| names.sort());
         Ok(dumps)
-    }
-
-    /// Returns the number of surfaces and the number of draws with textures.
-    pub fn count(&self) -> (usize, usize) {
-        (self.surfaces.iter().map(BTreeMap::len).sum(), self.textures.len())
     }
 
     /// Returns the textures of a draw that can be read, by unit and layer.
@@ -226,6 +213,7 @@ mod tests {
         assert_eq!([0, 1].map(|draw| byte(dumps.before(draw, Buffer::Color))), [Some(1), Some(2)]);
         assert_eq!(dumps.before(0, Buffer::Depth), None);
         assert_eq!(dumps.textures(0), [TextureDump { unit: 0, layer: 0, bytes: vec![9; 3] }]);
-        assert_eq!((dumps.textures(1), dumps.count()), (vec![], (4, 1)));
+        assert_eq!(dumps.textures(1), []);
+        assert_eq!((dumps.surfaces.each_ref().map(BTreeMap::len), dumps.textures.len()), ([4, 0], 1));
     }
 }

@@ -7,8 +7,8 @@ use ninebit::plan::{Plan, PlanError, PlanOptions};
 use ninebit::raster::depth;
 use ninebit::rop;
 use ninebit::state::{
-    DepthBuffer, Draw, Named, Palette, Profile, Rectangle, Scene, ShaderOperation, TEXTURE_UNITS, Target, Texture,
-    TextureFormat, TextureImage, TextureKind, TextureUnit, VertexDepths,
+    Buffer, DepthBuffer, Draw, Named, Palette, Profile, Rectangle, Scene, ShaderOperation, TEXTURE_UNITS, Target,
+    Texture, TextureFormat, TextureImage, TextureKind, TextureUnit, VertexDepths,
 };
 use ninebit_scene::clear::Clear;
 
@@ -17,10 +17,9 @@ use crate::draw::surface::{Surface, surface};
 use crate::draw::texture::{Image, entries, image, palette, unit};
 use crate::draw::view::View;
 use crate::draw::{raster, shader, vertices};
-use crate::dumps::Buffer;
 use crate::gap::Gap;
 use crate::import::Sources;
-use crate::memory::{Layout, Memory, raw, raw_depths, words};
+use crate::memory::{Layout, Memory, raw, words};
 use crate::state::{Batch, State};
 
 /// A draw or a clear of a frame.
@@ -94,7 +93,7 @@ impl TargetUse {
         let Surface { pitch, zeta_pitch, swizzled, .. } = self.surface;
         let (format, pitch) = match buffer {
             Buffer::Color => (raw(target.format), pitch),
-            Buffer::Depth => (raw_depths(target.depth?.format), zeta_pitch),
+            Buffer::Depth => (target.depth?.format.texture_format(), zeta_pitch),
         };
         let layout = swizzled.map_or(Layout::Pitch(pitch), |_| Layout::Swizzled);
         words(memory, address.into(), format, [target.width, target.height, 1], layout)

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use ninebit::state::{DepthFormat, SurfaceFormat, TextureFormat};
+use ninebit::state::{SurfaceFormat, TextureFormat};
 use ninebit_files::texels;
 
 /// Bytes of memory that a console has; development kits have twice as much.
@@ -141,16 +141,6 @@ pub(crate) fn raw(format: SurfaceFormat) -> TextureFormat {
         4 => TextureFormat::A8R8G8B8,
         2 => TextureFormat::R5G6B5,
         _ => TextureFormat::L8,
-    }
-}
-
-/// Returns the format of textures that has the words of a depth buffer.
-pub(crate) fn raw_depths(format: DepthFormat) -> TextureFormat {
-    match format {
-        DepthFormat::Z16 => TextureFormat::Z16,
-        DepthFormat::Z24S8 => TextureFormat::Z24S8,
-        DepthFormat::Z16F => TextureFormat::Z16F,
-        DepthFormat::Z24S8F => TextureFormat::Z24S8F,
     }
 }
 

@@ -54,15 +54,14 @@ impl Upload {
         Upload { words: Words::new(4 * groups), next: None }
     }
 
-    /// Takes a word, whose method says which of the four it is; the fourth moves on to the next group. Returns whether it was said where it goes.
-    fn take(&mut self, method: u32, word: u32) -> bool {
-        let Some(group) = self.next else { return false };
+    /// Takes a word, whose method says which of the four it is; the fourth moves on to the next group. A word before the first address is lost.
+    fn take(&mut self, method: u32, word: u32) {
+        let Some(group) = self.next else { return };
         let part = method / 4 % 4;
         self.words.set((group as usize).saturating_mul(4).saturating_add(part as usize), word);
         if part == 3 {
             self.next = group.checked_add(1);
         }
-        true
     }
 }
 
@@ -108,8 +107,6 @@ pub struct State {
     pub attributes: Attributes,
     known_attributes: u16,
     batch: Option<Box<Batch>>,
-    /// Whether a word of the program came before it was said where it goes.
-    pub lost_program: bool,
 }
 
 impl Default for State {
@@ -121,7 +118,6 @@ impl Default for State {
             attributes: [DEFAULT; ATTRIBUTES],
             known_attributes: 0,
             batch: None,
-            lost_program: false,
         }
     }
 }
@@ -200,8 +196,8 @@ impl State {
         match place.map(|place| place.method.treatment) {
             Some(Treatment::Draw) => return self.draw(line, method, word),
             Some(Treatment::Flip) => return Some(Action::Flip),
-            Some(Treatment::Program) => self.lost_program |= !self.program.take(method, word),
-            Some(Treatment::Constant) => self.lost_program |= !self.constants.take(method, word),
+            Some(Treatment::Program) => self.program.take(method, word),
+            Some(Treatment::Constant) => self.constants.take(method, word),
             Some(Treatment::Vertex) => self.vertex(method, word),
             _ => {}
         }
@@ -421,7 +417,7 @@ mod tests {
     fn programs_and_constants_go_where_they_are_loaded() {
         let mut state = State::default();
         follow(&mut state, &[(class::SET_TRANSFORM_PROGRAM, 9)]);
-        assert!(state.lost_program);
+        assert_eq!(state.program(0, 0), None);
         let word = |n: u32| (class::SET_TRANSFORM_PROGRAM + 4 * n, n);
         let mut writes = vec![(class::SET_TRANSFORM_PROGRAM_LOAD, 134)];
         writes.extend((0..8).map(word));

@@ -2,6 +2,8 @@
 //!
 //! Every language of programs is checked here. Its front end records the places of what it read, and names registers in its own terms.
 
+pub mod draw;
+pub mod shader;
 pub mod surface;
 pub mod texture;
 

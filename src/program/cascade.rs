@@ -228,7 +228,7 @@ pub(crate) struct Cascade {
 
 /// The result of lowering a program.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Lowered<U = ()> {
+pub struct LoweredProgram<U = ()> {
     /// The program as state of the chip.
     pub combiners: Combiners,
     /// What each general stage was made from.
@@ -362,7 +362,6 @@ impl Cascade {
         CombinerInput { register: value.register, component, mapping }
     }
 
-    /// Returns the register of a constant.
     fn constant(&mut self, color: [u8; 4], span: &Span) -> Register {
         let found = self.constants.iter().position(|constant| *constant == color);
         let index = found.unwrap_or_else(|| {
@@ -383,7 +382,7 @@ impl Cascade {
         end: End,
         mut all: Vec<Diagnostic>,
         units: U,
-    ) -> Result<Lowered<U>, Vec<Diagnostic>> {
+    ) -> Result<LoweredProgram<U>, Vec<Diagnostic>> {
         if self.current.register != Register::Spare0 {
             // No stage affects the result.
             let nothing = Cascade::new(self.profile, self.signed_textures);
@@ -409,7 +408,7 @@ impl Cascade {
         }
         let final_combiner = final_combiner(end, self.current.alpha_is_blue, constants);
         let combiners = Combiners { stages: self.stages, mux_select: MuxSelect::Msb, final_combiner };
-        Ok(Lowered { combiners, origins: self.origins, units })
+        Ok(LoweredProgram { combiners, origins: self.origins, units })
     }
 }
 

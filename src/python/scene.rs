@@ -80,10 +80,10 @@ impl Scene {
 }
 
 /// A document, height and width, and the bytes and numbers of pixels.
-type Measured<'py> = (String, (u32, u32), Bound<'py, PyArray1<u8>>, Bound<'py, PyArray1<f64>>);
+type MeasuredPicture<'py> = (String, (u32, u32), Bound<'py, PyArray1<u8>>, Bound<'py, PyArray1<f64>>);
 
 /// Name, format, width, height, words, bytes of the picture, depths, stencils.
-type Drawn<'py> = (
+type FrameArrays<'py> = (
     String,
     &'static str,
     u32,
@@ -156,7 +156,7 @@ impl Scene {
         threads: usize,
         policies: Vec<String>,
         work: Option<u64>,
-    ) -> PyResult<Vec<Drawn<'py>>> {
+    ) -> PyResult<Vec<FrameArrays<'py>>> {
         let frames = detached(py, || {
             let named = Engine::from_name(engine).ok_or_else(|| {
                 Failure::argument(
@@ -268,7 +268,12 @@ impl Scene {
 
     /// Measures the picture against the truth. Returns a JSON document, height and width, the picture, R, G, B, A, and the truth, R, G, B from 0 to 255, NaN
     /// where a pixel is not measured.
-    fn measure<'py>(&self, py: Python<'py>, policies: Vec<String>, work: Option<u64>) -> PyResult<Measured<'py>> {
+    fn measure<'py>(
+        &self,
+        py: Python<'py>,
+        policies: Vec<String>,
+        work: Option<u64>,
+    ) -> PyResult<MeasuredPicture<'py>> {
         let (value, size, shown, truth) = detached(py, || {
             let plan = self.plan(Scene::drawing(&policies, work)?)?;
             let Some(truth) = &self.loaded.truth else {
@@ -344,7 +349,7 @@ fn changed(changes: &[(String, String)]) -> Result<Vec<Change>, Failure> {
     changes.iter().map(|(path, value)| Ok(Change::new(path, value)?)).collect()
 }
 
-fn drawn<'py>(py: Python<'py>, surface: &Surface, target: &ninebit::state::Target) -> PyResult<Drawn<'py>> {
+fn drawn<'py>(py: Python<'py>, surface: &Surface, target: &ninebit::state::Target) -> PyResult<FrameArrays<'py>> {
     let depths = target.depth.map(|_| PyArray1::from_vec(py, surface.depths().collect::<Vec<u32>>()));
     let stencils = target
         .depth

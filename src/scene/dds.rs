@@ -84,7 +84,7 @@ struct Header {
 /// The file is cut off or longer than its header says, its sides exceed the limits, a face is missing, or its texture is of a kind that no
 /// texture unit of the model reads. No input makes this panic.
 pub fn decode(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Dds, ImageError> {
-    texture(bytes, limits).map_err(|fault| fault.of(path))
+    texture(bytes, limits).map_err(|fault| fault.at(path))
 }
 
 fn texture(bytes: &[u8], limits: &ImageLimits) -> Result<Dds, ImageFault> {

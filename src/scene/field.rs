@@ -17,9 +17,9 @@ use ninebit_program::{finding, warning};
 const MAX_WORDS: usize = 9;
 
 /// A type whose values may be defaults.
-pub(super) trait Shown<'a>: Valued<'a> {
+pub(super) trait Printed<'a>: Valued<'a> {
     /// Returns the value as a scene writes it.
-    fn shown(value: &Self::Value) -> String;
+    fn print(value: &Self::Value) -> String;
 }
 
 macro_rules! valued {
@@ -29,8 +29,8 @@ macro_rules! valued {
             $read(reader, raw)
         }
     }
-    impl<'a> Shown<'a> for $type {
-        fn shown(value: &$value) -> String {
+    impl<'a> Printed<'a> for $type {
+        fn print(value: &$value) -> String {
             value.to_string()
         }
     })+ };
@@ -73,8 +73,8 @@ impl<'a, T: Named> Valued<'a> for Name<T> {
     }
 }
 
-impl<'a, T: Named> Shown<'a> for Name<T> {
-    fn shown(value: &T) -> String {
+impl<'a, T: Named> Printed<'a> for Name<T> {
+    fn print(value: &T) -> String {
         value.name().to_owned()
     }
 }
@@ -96,8 +96,8 @@ impl<'a> Valued<'a> for ViewerWord {
     }
 }
 
-impl<'a> Shown<'a> for ViewerWord {
-    fn shown(value: &Viewer) -> String {
+impl<'a> Printed<'a> for ViewerWord {
+    fn print(value: &Viewer) -> String {
         match value {
             Viewer::Local => "Local".to_owned(),
             Viewer::Infinite(direction) => format!("Infinite{}", listed(direction)),
@@ -240,7 +240,7 @@ pub(super) use read_field;
 macro_rules! described_field {
     ($field:expr, $type:ty, []) => { $field };
     ($field:expr, $type:ty, [or $words:literal]) => { $field.or($words) };
-    ($field:expr, $type:ty, [] $default:expr) => { $field.written(&<$type as Shown<'_>>::shown(&$default)) };
+    ($field:expr, $type:ty, [] $default:expr) => { $field.written(&<$type as Printed<'_>>::print(&$default)) };
     ($field:expr, $type:ty, [any] $default:expr) => { described_field!($field, $type, [] $default) };
     ($field:expr, $type:ty, [required $($more:tt)*]) => { $field.or("required") };
     ($field:expr, $type:ty, [$(or $words:literal)? in $range:expr, $what:literal $(, $more:ident($said:expr))*]) => {

@@ -167,12 +167,12 @@ pub(crate) enum ImageFault {
 
 impl ImageFault {
     /// Makes the error that the file at `path` has this fault.
-    pub(super) fn of(self, path: &Path) -> ImageError {
+    pub(super) fn at(self, path: &Path) -> ImageError {
         ImageError { path: path.to_path_buf(), fault: self }
     }
 
     /// Returns the stable code, and the help: what to do about the fault.
-    fn told(&self) -> (&'static str, &'static str) {
+    fn message_and_help(&self) -> (&'static str, &'static str) {
         let smaller = "scale the image down; `ninebit limits` prints what is allowed";
         match self {
             ImageFault::Missing => (
@@ -201,12 +201,12 @@ impl ImageFault {
 impl ImageError {
     /// Returns the code, which `docs/errors.md` lists.
     pub fn code(&self) -> &'static str {
-        self.fault.told().0
+        self.fault.message_and_help().0
     }
 
     /// Returns what to do about it.
     pub fn help(&self) -> &'static str {
-        self.fault.told().1
+        self.fault.message_and_help().1
     }
 
     /// Returns the path of the file.
@@ -243,7 +243,7 @@ pub fn load(path: &Path, limits: &ImageLimits) -> Result<Rgba, ImageError> {
 /// See [`ImageError`]. No input makes this panic.
 pub fn load_words(path: &Path, limits: &ImageLimits) -> Result<(Rgba, bool), ImageError> {
     let bytes = read(&Folder, path, limits.file())?;
-    picture(&bytes, path, limits, 16).map_err(|fault| fault.of(path))
+    picture(&bytes, path, limits, 16).map_err(|fault| fault.at(path))
 }
 
 /// Returns the pixel that stands for a word of 16 bits: the high byte in red, the low byte in green.
@@ -268,8 +268,8 @@ pub(crate) fn contents(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Resul
         return dds::decode(bytes, path, limits).map(Contents::Texture);
     }
     picture(bytes, path, limits, 8).map(|(picture, _)| Contents::Picture(picture)).map_err(|fault| match fault {
-        ImageFault::Format(_) => ImageFault::Format("neither a PNG, a TGA nor a DDS file").of(path),
-        fault => fault.of(path),
+        ImageFault::Format(_) => ImageFault::Format("neither a PNG, a TGA nor a DDS file").at(path),
+        fault => fault.at(path),
     })
 }
 
@@ -278,7 +278,7 @@ pub(crate) fn contents(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Resul
 /// # Errors
 /// Those of [`load`], except for errors of reading.
 pub fn decode(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Rgba, ImageError> {
-    picture(bytes, path, limits, 8).map(|(picture, _)| picture).map_err(|fault| fault.of(path))
+    picture(bytes, path, limits, 8).map(|(picture, _)| picture).map_err(|fault| fault.at(path))
 }
 
 /// Decodes a PNG or TGA file whose channels have at most `bits` bits. Returns the pixels, and whether they are those of 16-bit words.
@@ -353,5 +353,5 @@ pub(super) fn read(assets: &dyn Assets, path: &Path, limit: FileLimit) -> Result
         ReadError::TooLarge(limit) => ImageFault::FileBytes(limit),
         ReadError::Refused(error) => ImageFault::Unreadable(error),
     };
-    assets.bytes(path, limit).map_err(|error| fault(error).of(path))
+    assets.bytes(path, limit).map_err(|error| fault(error).at(path))
 }

@@ -248,7 +248,7 @@ pub fn parse_changed(
     }
     diagnostics.sort_by_key(Diagnostic::order);
     match found {
-        Some(lower::Found { scene, plan, truth, mut spans }) => {
+        Some(lower::LoweredScene { scene, plan, truth, mut spans }) => {
             if let Some(family) = &family {
                 spans.iter_mut().for_each(|draw| family.keep_inside(draw, text));
             }

@@ -9,7 +9,7 @@ use super::diagnostic::Diagnostic;
 use super::mesh::Mesh;
 use super::raw::Raw;
 use super::wording::{closest, shorten};
-use ninebit::state::{Palette, Target, Texture};
+use ninebit::state::{Buffer, Palette, Target, Texture};
 use ninebit_program::finding;
 
 /// The names of one kind of values, with the place of each definition and whether it is used.
@@ -20,12 +20,12 @@ pub(crate) struct Index {
     pub(super) define: String,
     /// Index of each name in `list`; `None` for a name whose definition was not read, about which nothing is reported.
     pub(super) by_name: HashMap<String, Option<usize>>,
-    pub(super) list: Vec<Known>,
+    pub(super) list: Vec<Definition>,
     /// Whether there are more definitions that were not read: unknown names are then not reported.
     pub(super) unread: bool,
 }
 
-pub(crate) struct Known {
+pub(crate) struct Definition {
     pub(super) name: String,
     pub(super) place: Span,
     /// Index of the value; `None` if the definition is wrong.
@@ -40,7 +40,7 @@ impl Index {
 
     pub(super) fn add(&mut self, name: String, place: Span, index: Option<usize>) {
         self.by_name.insert(name.clone(), Some(self.list.len()));
-        self.list.push(Known { name, place, index, used: false });
+        self.list.push(Definition { name, place, index, used: false });
     }
 
     /// Registers names whose definitions are not read.
@@ -100,15 +100,6 @@ pub(crate) struct Names<'a> {
     pub(super) meshes: Table<'a>,
     pub(super) programs: Table<'a>,
     pub(super) blends: Table<'a>,
-}
-
-/// A buffer of a target.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Buffer {
-    /// Colours.
-    Color,
-    /// Depths and stencils.
-    Depth,
 }
 
 /// The render targets, with their names.

@@ -38,12 +38,12 @@ pub(crate) enum PathFault {
 
 impl PathFault {
     /// Makes the error that a name has this fault.
-    fn of(self, name: &str) -> PathError {
+    fn at(self, name: &str) -> PathError {
         PathError { name: shorten(name), fault: self }
     }
 
     /// Returns the stable code, and the help: what to do about the fault.
-    fn told(&self) -> (&'static str, &'static str) {
+    fn message_and_help(&self) -> (&'static str, &'static str) {
         match self {
             PathFault::Form(_) => (
                 "NB0501",
@@ -61,12 +61,12 @@ impl PathFault {
 impl PathError {
     /// Makes the error that there is no file of a name.
     pub(crate) fn missing(folder: &Path, name: &str) -> PathError {
-        PathFault::Missing(folder.to_path_buf()).of(name)
+        PathFault::Missing(folder.to_path_buf()).at(name)
     }
 
     /// Returns the code, which `docs/errors.md` lists.
     pub fn code(&self) -> &'static str {
-        self.fault.told().0
+        self.fault.message_and_help().0
     }
 
     /// Returns what to do about it.
@@ -80,7 +80,7 @@ impl PathError {
             Some((inside, _)) => format!("did you mean `{inside}/{file}`?"),
             None => format!("did you mean `{file}`?"),
         };
-        meant.map_or_else(|| self.fault.told().1.to_owned(), written)
+        meant.map_or_else(|| self.fault.message_and_help().1.to_owned(), written)
     }
 
     /// Returns whether the file does not exist; other errors concern files that may not be used.
@@ -125,12 +125,12 @@ pub fn resolve(folder: &Path, name: &str) -> Result<PathBuf, PathError> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let classify = |source: io::Error| match source.kind() {
         io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => PathError::missing(folder, name),
-        _ => PathFault::Unreachable(source).of(name),
+        _ => PathFault::Unreachable(source).at(name),
     };
     let root = folder.canonicalize().map_err(classify)?;
     let file = root.join(name).canonicalize().map_err(classify)?;
     if !file.starts_with(&root) {
-        return Err(PathFault::Escape(folder.to_path_buf()).of(name));
+        return Err(PathFault::Escape(folder.to_path_buf()).at(name));
     }
     Ok(file)
 }
@@ -140,7 +140,7 @@ pub fn resolve(folder: &Path, name: &str) -> Result<PathBuf, PathError> {
 /// # Errors
 /// [`PathFault::Form`].
 pub(crate) fn check(name: &str) -> Result<(), PathError> {
-    objection(name).map_or(Ok(()), |reason| Err(PathFault::Form(reason).of(name)))
+    objection(name).map_or(Ok(()), |reason| Err(PathFault::Form(reason).at(name)))
 }
 
 /// Returns what is wrong with the form of `name`, if anything. The decision uses the text alone, so it is the same on every system.

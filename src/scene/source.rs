@@ -247,7 +247,6 @@ pub(super) struct Unit;
 pub(super) struct ShaderStage;
 /// Operation of a stage of the texture shader.
 pub(super) struct ShaderOperation;
-/// Source of a vertex attribute.
 pub(super) struct Attribute;
 /// A constant of a vertex program: numbers, `Matrix(...)`, `Color(...)`.
 pub(super) struct ShaderConstant;
@@ -255,9 +254,7 @@ pub(super) struct ShaderConstant;
 pub(super) struct CoordinateSource;
 /// Source of a component of a coordinate set.
 pub(super) struct Generator;
-/// An input of a combiner portion.
 pub(super) struct Input;
-/// An input of the final combiner.
 pub(super) struct FinalInput;
 /// A destination of a combiner portion.
 pub(super) struct Output;

@@ -4,7 +4,7 @@ use crate::Unit;
 use ninebit_handbook::{GRADES, Rule, find};
 
 /// Returns the weakest grade of a unit's rules. The readings of an open question are graded as what nothing decides.
-pub fn of(unit: &dyn Unit) -> &'static str {
+pub fn grade(unit: &dyn Unit) -> &'static str {
     let last = GRADES.len() - 1;
     let weakest = unit.rules().iter().map(|rule| find(rule).map_or(last, Rule::weakest)).max().unwrap_or(0);
     GRADES[if unit.readings().is_empty() { weakest } else { last }]
@@ -24,6 +24,6 @@ mod tests {
             }
         }
         let product = units::by_name("product").expect("a unit of this name");
-        assert_eq!((find("CMB-6").map(Rule::weakest), of(product)), (Some(2), "CHOSEN"));
+        assert_eq!((find("CMB-6").map(Rule::weakest), grade(product)), (Some(2), "CHOSEN"));
     }
 }

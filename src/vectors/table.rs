@@ -70,7 +70,7 @@ impl Writer {
     pub fn new(contents: Contents) -> Writer {
         let unit = contents.unit;
         let (inputs, results) = (unit.inputs(), unit.results());
-        Writer { contents, inputs, results, grade: handbook::of(unit) }
+        Writer { contents, inputs, results, grade: handbook::grade(unit) }
     }
 
     /// Returns the unit, chip, level and seed of the table.

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use crate::Refused;
 
 /// An answer and its picture.
-type Shown = (Value, Vec<[u8; 4]>);
+type ShownFrame = (Value, Vec<[u8; 4]>);
 
 /// Compiles the plan of the first draws. The scene is planned anew, so that nothing is pruned because later draws would cover it.
 pub(crate) fn stepped(scene: &Scene, until: usize, policies: Policies) -> Result<Plan, Refused> {
@@ -24,7 +24,7 @@ pub(crate) fn stepped(scene: &Scene, until: usize, policies: Policies) -> Result
 }
 
 /// Draws a target. The picture holds its colours or, with `depth`, the words of its depth buffer: depth with the lowest byte first, then the stencil.
-pub(crate) fn draw(plan: &Plan, target: usize, depth: bool) -> Result<Shown, Refused> {
+pub(crate) fn draw(plan: &Plan, target: usize, depth: bool) -> Result<ShownFrame, Refused> {
     let frames = render(plan, &RenderOptions::default());
     let surface = &frames.surfaces[target];
     let (width, height) = (surface.width, surface.height);
@@ -50,7 +50,7 @@ fn picture(plan: &Plan, target: usize) -> Rgba {
 }
 
 /// Compares the definition with float64 arithmetic.
-pub(crate) fn against_ideal(plan: &Plan, target: usize) -> Shown {
+pub(crate) fn against_ideal(plan: &Plan, target: usize) -> ShownFrame {
     let options = CompareOptions { mode: Mode::Free, target, threads: 1, channels: ALL_CHANNELS };
     let found = compare(plan, &options);
     let largest = |errors: &[f32; 4]| errors.iter().filter(|e| !e.is_nan()).fold(0.0_f32, |most, e| most.max(e.abs()));
@@ -67,19 +67,19 @@ pub(crate) fn against_ideal(plan: &Plan, target: usize) -> Shown {
 }
 
 /// Compares the definition with itself under other policies.
-pub(crate) fn against_policies(plan: &Plan, target: usize, policies: Policies) -> Result<Shown, Refused> {
+pub(crate) fn against_policies(plan: &Plan, target: usize, policies: Policies) -> Result<ShownFrame, Refused> {
     let other = plan.clone().under(policies);
     between(&picture(plan, target), &picture(&other, target), false)
 }
 
 /// Compares the definition with a picture from elsewhere. Alpha is ignored, because that of screenshots has no meaning.
-pub(crate) fn against_picture(plan: &Plan, target: usize, second: Option<&Rgba>) -> Result<Shown, Refused> {
+pub(crate) fn against_picture(plan: &Plan, target: usize, second: Option<&Rgba>) -> Result<ShownFrame, Refused> {
     let second = second.ok_or("there is no second picture")?;
     between(&picture(plan, target), second, true)
 }
 
 /// Compares two pictures. The resulting picture shows the largest difference of each pixel's channels.
-fn between(a: &Rgba, b: &Rgba, ignore_alpha: bool) -> Result<Shown, Refused> {
+fn between(a: &Rgba, b: &Rgba, ignore_alpha: bool) -> Result<ShownFrame, Refused> {
     let options = Options { ignore_alpha, regions: 50 };
     let found = diff::compare(a, b, &options).map_err(|error| error.to_string())?;
     let regions = found.regions.iter().map(|region| {

@@ -7,8 +7,9 @@ use ninebit::diagnostic::Severity;
 use ninebit::state::{Named, Profile, Register, Scale, ShaderOperation};
 use ninebit_program::Spanned;
 use ninebit_program::pixel_shader::{
-    Arithmetic, Bank, Bump, CONSTANTS, Context, Definition, Lowered, Mask, Modifier, Operation, PixelShader, Selector,
-    ShaderRegister, Source, Target, TextureInstruction, TextureOperation, TextureSource, Version, lower, parse, print,
+    Arithmetic, Bank, Bump, CONSTANTS, Context, Definition, LoweredProgram, Mask, Modifier, Operation, PixelShader,
+    Selector, ShaderRegister, Source, Target, TextureInstruction, TextureOperation, TextureSource, Version, lower,
+    parse, print,
 };
 use proptest::prelude::*;
 
@@ -218,7 +219,7 @@ impl State {
     }
 }
 
-fn lowered(text: &str, profile: Profile) -> Lowered {
+fn lowered(text: &str, profile: Profile) -> LoweredProgram {
     let program = parse(text).unwrap_or_else(|findings| panic!("{text}\n{findings:?}")).program;
     lower(&program, &Context::new(profile)).unwrap_or_else(|findings| panic!("{text}\n{findings:?}"))
 }

@@ -181,7 +181,7 @@ pub fn build(tape: &[u32]) -> Scene {
     let mut textures: Vec<Texture> = (0..c.size(2, 4)).map(|n| texture::texels(&mut c, profile, n)).collect();
     textures.extend(targets.iter().enumerate().filter_map(|(n, t)| texture::view(&mut c, profile, n, t)));
     let count = [2, 3, 4, 1][c.below(4) as usize];
-    let given = Given { profile, targets: &targets, textures: &textures, palettes: palettes.len() };
+    let given = SceneParts { profile, targets: &targets, textures: &textures, palettes: palettes.len() };
     let mut draws_tape = tape.part(4 * DRAW);
     let mut draws: Vec<Draw> = (0..count).map(|n| draw(&mut draws_tape.part(DRAW), &given, n)).collect();
     for draw in &mut draws {
@@ -191,7 +191,7 @@ pub fn build(tape: &[u32]) -> Scene {
 }
 
 /// The resources that draws refer to.
-struct Given<'a> {
+struct SceneParts<'a> {
     profile: Profile,
     targets: &'a [Target],
     textures: &'a [Texture],
@@ -234,19 +234,14 @@ fn target(c: &mut Choices<'_>, profile: Profile, n: u32, large: bool) -> Target 
     let contents = clear_color[3].is_multiple_of(4).then(|| words(8 * format.bytes()));
     // The same of depths, where there are textures of such words.
     let has_depths = profile == Profile::Nv2a && clear_color[2].is_multiple_of(4);
-    let bits = depth.filter(|_| has_depths).map(|depth| stored_bits(depth.format));
+    let bits = depth.filter(|_| has_depths).map(|depth| depth.format.stored_bits());
     let depth_contents = bits.map(words);
     let name = format!("target{n}");
     Target { name, clear_color, contents, depth, depth_contents, ..Target::new(width, height, format) }
 }
 
-/// Returns the bits that a pixel of a depth buffer has, with those of its stencil.
-pub(crate) fn stored_bits(format: DepthFormat) -> u32 {
-    if format.has_stencil() { 32 } else { format.bits() }
-}
-
-fn draw(c: &mut Choices<'_>, given: &Given<'_>, n: u32) -> Draw {
-    let Given { profile, targets, textures, .. } = *given;
+fn draw(c: &mut Choices<'_>, given: &SceneParts<'_>, n: u32) -> Draw {
+    let SceneParts { profile, targets, textures, .. } = *given;
     let mut vertex_tape = c.part(VERTICES);
     let target = c.below(targets.len() as u32) as usize;
     let surface = &targets[target];

@@ -1,6 +1,6 @@
 //! Random textures, palettes, texture units and texture shaders.
 
-use super::{Choices, CoordinateStyles, Given, TEXTURE_SHADERS};
+use super::{Choices, CoordinateStyles, SceneParts, TEXTURE_SHADERS};
 use ninebit::state::*;
 use std::sync::Arc;
 
@@ -98,7 +98,7 @@ pub(super) fn view(c: &mut Choices<'_>, profile: Profile, n: usize, target: &Tar
 type Units = ([Option<TextureUnit>; TEXTURE_UNITS], [ShaderStage; TEXTURE_UNITS]);
 
 /// Returns the units of a draw, which sample only the `usable` textures, and their texture shader.
-pub(super) fn units(c: &mut Choices<'_>, given: &Given<'_>, usable: &[usize], styles: &CoordinateStyles) -> Units {
+pub(super) fn units(c: &mut Choices<'_>, given: &SceneParts<'_>, usable: &[usize], styles: &CoordinateStyles) -> Units {
     let shader = TEXTURE_SHADERS && given.profile == Profile::Nv2a && c.once_in(2);
     let operations = shader.then(|| operations(&mut c.part(48)));
     let mut stages = [0, 1, 2, 3].map(|k| ShaderStage::conventional(k, false));
@@ -216,7 +216,7 @@ fn repair(stages: &mut [ShaderStage; TEXTURE_UNITS], bound: &[Option<TextureUnit
     }
 }
 
-pub(super) fn unit(c: &mut Choices<'_>, given: &Given<'_>, usable: &[usize]) -> TextureUnit {
+pub(super) fn unit(c: &mut Choices<'_>, given: &SceneParts<'_>, usable: &[usize]) -> TextureUnit {
     let nv2a = given.profile == Profile::Nv2a;
     let texture = c.pick(usable);
     let modes: &[AddressMode] = match (given.profile, given.textures[texture].kind) {

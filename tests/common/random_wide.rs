@@ -8,7 +8,7 @@ pub mod extreme;
 #[path = "random_front_end.rs"]
 mod front_end;
 
-use super::{Choices, Given, PLAIN, Tape, build, texture};
+use super::{Choices, PLAIN, SceneParts, Tape, build, texture};
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::*;
 use proptest::prelude::*;
@@ -342,7 +342,7 @@ fn share_texture(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
         return;
     }
     let one = c.below(scene.textures.len() as u32) as usize;
-    let given = Given {
+    let given = SceneParts {
         profile: scene.profile,
         targets: &scene.targets,
         textures: &scene.textures,

@@ -367,7 +367,7 @@ fn bounds_are_those_of_the_comparison() {
     for rule in Rule::ALL {
         // The bound of INT-4 allows for the last bits of float64, which would print as -0.000.
         let number = |n: f64| format!("{n:.3}").replace("-0.000", "0.000");
-        if let Some((low, high)) = bound::of(*rule, &plan) {
+        if let Some((low, high)) = bound::error_range(*rule, &plan) {
             table += &format!("| {} | {} | {} |\n", rule.name(), number(low), number(high));
         }
     }

@@ -31,7 +31,7 @@ pub(crate) struct Arguments {
 
 /// Measurements of a scene.
 #[derive(Debug, Serialize)]
-struct Measured {
+struct Measurement {
     scene: String,
     /// Name of the engine.
     engine: &'static str,
@@ -77,7 +77,7 @@ struct Document {
     engine: &'static str,
     isa: &'static str,
     threads: usize,
-    scenes: Vec<Measured>,
+    scenes: Vec<Measurement>,
     failed: Vec<Failed>,
 }
 
@@ -121,7 +121,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
             })
             .collect();
         times.sort_by(f64::total_cmp);
-        Ok(Measured {
+        Ok(Measurement {
             scene: shown::lossless(path),
             engine: renderer.engine().name(),
             shaded_pixels,

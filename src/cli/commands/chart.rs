@@ -12,7 +12,7 @@ use ninebit_lab::chart::curves::Curve;
 use ninebit_lab::chart::data::Times;
 use ninebit_lab::chart::evaluators::Evaluator;
 use ninebit_lab::chart::page::{File, replace_section};
-use ninebit_lab::chart::report::Measured;
+use ninebit_lab::chart::report::Measurements;
 use ninebit_lab::chart::techniques::{self, TechniqueError};
 use ninebit_lab::chart::timing::Effort;
 use ninebit_lab::chart::{curves, evaluators, surfaces};
@@ -162,7 +162,7 @@ fn keep_versioned(folder: &Path, page: Page) -> Result<(), Failure> {
     if versioned && !ours { Err(OutputError::Versioned { path }.into()) } else { Ok(()) }
 }
 
-fn speed(arguments: &Arguments, times: Option<Times>, context: Context) -> Result<Measured, Failure> {
+fn speed(arguments: &Arguments, times: Option<Times>, context: Context) -> Result<Measurements, Failure> {
     let fault = |error: Box<SceneError>| refused(*error);
     let entries = techniques::find(&arguments.scenes).map_err(technique_failure)?;
     let (effort, side) = if arguments.quick { (Effort::QUICK, QUICK_SIDE) } else { (Effort::FULL, SIDE) };
@@ -178,7 +178,7 @@ fn speed(arguments: &Arguments, times: Option<Times>, context: Context) -> Resul
         progress.report(done.get(), total);
     };
     let isa = Isa::best().name().to_owned();
-    let mut measured = Measured { isa, quick: arguments.quick, ..Measured::default() };
+    let mut measured = Measurements { isa, quick: arguments.quick, ..Measurements::default() };
     for entry in &entries {
         let technique = isolated(&entry.path, || {
             let known = times.as_ref().map(|times| times.of(entry));
@@ -204,7 +204,7 @@ fn speed(arguments: &Arguments, times: Option<Times>, context: Context) -> Resul
         // Names and texts are those of today.
         let points = known.into_iter().map(|curve| curve.points);
         let curves = curves.into_iter().zip(points).map(|((curve, _), points)| Curve { points, ..curve }).collect();
-        return Ok(Measured { isa, quick, evaluators, surfaces, curves, ..measured });
+        return Ok(Measurements { isa, quick, evaluators, surfaces, curves, ..measured });
     }
     for (name, surface) in &surfaces {
         let cost = isolated(Path::new(name), || surface.cost(name, side, &effort).map_err(fault));

@@ -36,8 +36,8 @@ pub(crate) struct Arguments {
     #[arg(long)]
     uniform: bool,
     /// Functions of a scene's draws: what is given of textures
-    #[arg(long, value_enum, value_name = "FORM", default_value_t = Given::Registers)]
-    textures: Given,
+    #[arg(long, value_enum, value_name = "FORM", default_value_t = TextureInput::Registers)]
+    textures: TextureInput,
     /// C99, GLSL, WGSL: a scene's draws from the place of a pixel, the constants of its triangle and the memories of textures to the stored words
     #[arg(long, conflicts_with_all = ["generic", "uniform", "textures", "fragment"])]
     whole: bool,
@@ -65,7 +65,7 @@ enum Form {
 
 /// What functions are given of textures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Given {
+enum TextureInput {
     /// What each unit yields
     Registers,
     /// Fetched words and weights: the filter is part of the function
@@ -198,7 +198,6 @@ fn whole(
     })
 }
 
-/// Plans a scene.
 fn compiled(scene: &Scene, options: PlanOptions) -> Result<Plan, Failure> {
     Plan::compile(scene, &options).map_err(|errors| {
         let message = errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
@@ -218,7 +217,7 @@ fn functions(
     let options = Options {
         policies: arguments.state.policies()?,
         uniform: arguments.uniform,
-        textures: if arguments.textures == Given::Words { Textures::Words } else { Textures::Registers },
+        textures: if arguments.textures == TextureInput::Words { Textures::Words } else { Textures::Registers },
         fragment: arguments.fragment,
     };
     // Nothing is pruned: with `--uniform` other constants may be passed.

@@ -32,8 +32,8 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     policies: PolicyArguments,
     /// Write reports, `-` for stdout: json=FILE, junit=FILE, html=FILE; github prints annotations. Separated by commas
-    #[arg(long = "report", value_name = "REPORT", value_delimiter = ',', value_parser = wanted)]
-    reports: Vec<Wanted>,
+    #[arg(long = "report", value_name = "REPORT", value_delimiter = ',', value_parser = report_request)]
+    reports: Vec<ReportRequest>,
     /// Write what is known of each difference here: NAME.difference.png, NAME.drawn.png, NAME.txt
     #[arg(long, value_name = "DIR")]
     artifacts: Option<PathBuf>,
@@ -45,21 +45,20 @@ pub(crate) struct Arguments {
     expected: Option<PathBuf>,
 }
 
-/// A requested report.
 #[derive(Clone, Debug)]
-enum Wanted {
+enum ReportRequest {
     /// Annotations and a step summary for GitHub Actions.
     Github,
     /// The function that makes a document, and its destination.
     File(fn(&[Replayed]) -> String, Destination),
 }
 
-impl Wanted {
+impl ReportRequest {
     /// Returns the document's destination.
     fn destination(&self) -> Option<&Destination> {
         match self {
-            Wanted::Github => None,
-            Wanted::File(_, destination) => Some(destination),
+            ReportRequest::Github => None,
+            ReportRequest::File(_, destination) => Some(destination),
         }
     }
 }
@@ -68,7 +67,7 @@ impl Wanted {
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let options = options(arguments)?;
     let entries = entries(arguments)?;
-    let documents = || arguments.reports.iter().filter_map(Wanted::destination);
+    let documents = || arguments.reports.iter().filter_map(ReportRequest::destination);
     let stdout = documents().filter(|destination| **destination == Destination::Stdout).count();
     if stdout > 1 {
         return Err(Failure::usage("several reports cannot all go to stdout", "write all but one to files"));
@@ -154,12 +153,12 @@ fn entries(arguments: &Arguments) -> Result<Vec<Entry>, Failure> {
 }
 
 /// Writes the reports. Prints the errors of those that cannot be written. Returns the resulting status.
-fn write_reports(reports: &[Wanted], replayed: &[Replayed], context: Context) -> Exit {
+fn write_reports(reports: &[ReportRequest], replayed: &[Replayed], context: Context) -> Exit {
     let mut exit = Exit::Success;
     for wanted in reports {
         let written = match wanted {
-            Wanted::Github => github(replayed),
-            Wanted::File(document, destination) => destination.write(document(replayed).as_bytes()),
+            ReportRequest::Github => github(replayed),
+            ReportRequest::File(document, destination) => destination.write(document(replayed).as_bytes()),
         };
         if let Err(error) = written {
             exit = report_unwritten(error, context);
@@ -193,13 +192,13 @@ fn set(name: &str) -> bool {
     std::env::var(name).is_ok_and(|value| !matches!(value.to_ascii_lowercase().as_str(), "" | "0" | "false"))
 }
 
-fn wanted(text: &str) -> Result<Wanted, String> {
+fn report_request(text: &str) -> Result<ReportRequest, String> {
     let file = |file: &str| Destination::from(OsStr::new(file));
     match text.split_once('=') {
-        None if text == "github" => Ok(Wanted::Github),
-        Some(("json", path)) if !path.is_empty() => Ok(Wanted::File(report::json, file(path))),
-        Some(("junit", path)) if !path.is_empty() => Ok(Wanted::File(report::junit, file(path))),
-        Some(("html", path)) if !path.is_empty() => Ok(Wanted::File(report::html, file(path))),
+        None if text == "github" => Ok(ReportRequest::Github),
+        Some(("json", path)) if !path.is_empty() => Ok(ReportRequest::File(report::json, file(path))),
+        Some(("junit", path)) if !path.is_empty() => Ok(ReportRequest::File(report::junit, file(path))),
+        Some(("html", path)) if !path.is_empty() => Ok(ReportRequest::File(report::html, file(path))),
         _ => Err("not one of json=FILE, junit=FILE, html=FILE, github".to_owned()),
     }
 }

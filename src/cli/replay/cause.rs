@@ -37,7 +37,7 @@ impl fmt::Display for Cause {
 }
 
 /// A cause, its plan, and the surface that it draws.
-pub(super) struct Found {
+pub(super) struct ReplayCause {
     pub(super) cause: Cause,
     pub(super) plan: Plan,
     pub(super) surface: Surface,
@@ -51,10 +51,10 @@ pub(super) fn find(
     target: usize,
     first: Option<Pixel>,
     matches: &dyn Fn(&Surface) -> bool,
-) -> Option<Found> {
+) -> Option<ReplayCause> {
     let try_out = |plan: Plan, render: &RenderOptions, cause: Cause| {
         let surface = engine::render(&plan, render).surfaces.swap_remove(target);
-        matches(&surface).then_some(Found { cause, plan, surface })
+        matches(&surface).then_some(ReplayCause { cause, plan, surface })
     };
     if render.engine == Engine::Fast && plan.policies == Policies::DEFAULT {
         let scalar = RenderOptions { engine: Engine::Scalar, ..*render };

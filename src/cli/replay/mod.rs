@@ -26,7 +26,7 @@ pub use cause::Cause;
 pub use find::{Entry, EntryKind, FindError, find};
 pub(crate) use find::{Filter, part};
 use outcome::Summary;
-pub use outcome::{Difference, Known, Origin, Outcome, Pixel, Problem, ProblemKind, Replayed, Traces};
+pub use outcome::{Comparison, Difference, Origin, Outcome, Pixel, Problem, ProblemKind, Replayed, Traces};
 
 /// Options of a replay.
 #[derive(Clone, Debug, Default)]

@@ -125,7 +125,7 @@ pub struct Difference {
     /// The single change that yields the expected picture, if one was found.
     pub cause: Option<Cause>,
     /// Comparison with the expected picture, if it is known.
-    pub known: Option<Known>,
+    pub known: Option<Comparison>,
     /// The drawn picture as PNG.
     pub picture: Vec<u8>,
     /// Further remarks for people, one line each.
@@ -143,7 +143,7 @@ pub enum Origin {
 
 /// Comparison of the expected picture with the drawn one.
 #[derive(Clone, Debug)]
-pub struct Known {
+pub struct Comparison {
     /// Origin of the expected picture.
     pub origin: Origin,
     /// The drawn picture minus the expected one.
@@ -198,7 +198,7 @@ impl Difference {
                 )
             }
             (None, Mismatch::Digest { .. }) => {
-                format!("digest {} expected, {} drawn", short(&self.expected), short(&self.drawn))
+                format!("digest {} expected, {} drawn", short_digest(&self.expected), short_digest(&self.drawn))
             }
             (None, mismatch) => mismatch.to_string(),
         };
@@ -287,7 +287,7 @@ pub(super) fn color([r, g, b, a]: [u8; 4]) -> String {
 }
 
 /// Returns the first twelve digits of a digest.
-pub(super) fn short(digest: &str) -> String {
+pub(super) fn short_digest(digest: &str) -> String {
     digest.chars().take(12).collect()
 }
 
@@ -308,9 +308,9 @@ impl Replayed {
     pub fn message(&self) -> String {
         let message = match &self.outcome {
             Outcome::Match => String::new(),
-            Outcome::Blessed { before: None, after } => format!("digest {}, none before", short(after)),
+            Outcome::Blessed { before: None, after } => format!("digest {}, none before", short_digest(after)),
             Outcome::Blessed { before: Some(before), after } => {
-                format!("digest {}, {} before", short(after), short(before))
+                format!("digest {}, {} before", short_digest(after), short_digest(before))
             }
             Outcome::Skipped(reason) => reason.clone(),
             Outcome::Differs(difference) => difference.verdict(),

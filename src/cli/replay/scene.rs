@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::Options;
 use super::bless::{self, refused, unwritten};
-use super::cause::{self, Found};
+use super::cause::{self, ReplayCause};
 use super::find::{Entry, EntryKind};
-use super::outcome::{Difference, Known, Origin, Outcome, Pixel, Problem, ProblemKind, Replayed, Traces};
+use super::outcome::{Comparison, Difference, Origin, Outcome, Pixel, Problem, ProblemKind, Replayed, Traces};
 use super::panels::panels;
 use crate::expectation::{Expectation, Mismatch, masked_digest};
 use ninebit::diagnostic::{ErrorKind, Severity};
@@ -194,7 +194,7 @@ impl Subject<'_> {
         let matches =
             |surface: &Surface| self.expectation.compare(surface, self.folder).is_ok_and(|mismatch| mismatch.is_none());
         let found = cause::find(self.plan, &self.render, self.target, first, &matches);
-        if let (None, Some(Found { surface, .. })) = (&expected, &found) {
+        if let (None, Some(ReplayCause { surface, .. })) = (&expected, &found) {
             let mut picture = Rgba::new(surface.width, surface.rgba8());
             self.masked(&mut picture, &compared);
             expected = Some((picture, Origin::Cause));
@@ -241,17 +241,17 @@ impl Subject<'_> {
         expected: &Rgba,
         origin: Origin,
         drawn: &Rgba,
-        found: Option<&Found>,
-    ) -> Result<Option<Known>, Problem> {
+        found: Option<&ReplayCause>,
+    ) -> Result<Option<Comparison>, Problem> {
         let Some(first) = first_pixel(expected, drawn) else { return Ok(None) };
         let compared = diff::compare(expected, drawn, &diff::Options::default());
         let (Ok(difference), Ok((panels, scale))) = (compared, panels(expected, drawn)) else { return Ok(None) };
         let panels = png(panels.width(), panels.height(), panels.pixels()).map_err(unwritten)?;
         let traces = self.traces(first, found);
-        Ok(Some(Known { origin, difference, first, panels, scale, traces }))
+        Ok(Some(Comparison { origin, difference, first, panels, scale, traces }))
     }
 
-    fn traces(&self, first: Pixel, found: Option<&Found>) -> Option<Traces> {
+    fn traces(&self, first: Pixel, found: Option<&ReplayCause>) -> Option<Traces> {
         let at = (first.x, first.y);
         let drawn = engine::trace(self.plan, self.target, at, None).ok()?;
         let value = trace_value(self.plan, &drawn);

@@ -4,7 +4,7 @@
 use super::evaluators::Evaluator;
 use super::page::{Row, number, row};
 use super::questions::Light;
-use super::report::Measured;
+use super::report::Measurements;
 use super::tables::degrees;
 use super::techniques::Technique;
 use ninebit::combiner::mapping::map;
@@ -32,7 +32,7 @@ fn rms(way: &Technique) -> String {
     number(way.rms())
 }
 
-impl Measured {
+impl Measurements {
     /// Returns the table of five questions and their answers. Questions whose scenes were not measured are left out.
     pub(super) fn answers(&self) -> Vec<Row> {
         let lights = self.lights();

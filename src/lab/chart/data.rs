@@ -7,7 +7,7 @@ use super::curves::Curve;
 use super::evaluators::Evaluator;
 use super::page::row;
 use super::questions::Light;
-use super::report::Measured;
+use super::report::Measurements;
 use super::surfaces::SurfaceCost;
 use super::tables::{cause, causes, degrees};
 use super::techniques::{Entry, Technique};
@@ -38,7 +38,7 @@ const COUNTS: [Count; 10] = [
     ("frame_buffer_bytes", "bytes of colour read and written, per final pixel", |cost| cost.frame_buffer_bytes),
 ];
 
-impl Measured {
+impl Measurements {
     /// Returns the columns after those that identify the technique.
     fn columns(&self) -> Vec<Column> {
         let mut all = Vec::new();
@@ -165,7 +165,7 @@ struct TechniqueTime {
 }
 
 impl Times {
-    /// Reads a document that [`Measured`] wrote.
+    /// Reads a document that [`Measurements`] wrote.
     ///
     /// # Errors
     /// Returns a message if it is no such document.

@@ -18,7 +18,7 @@ pub(super) const FOLDER: &str = "speed-accuracy";
 
 /// All measurements that the page shows.
 #[derive(Clone, Debug, Default)]
-pub struct Measured {
+pub struct Measurements {
     /// Measured scenes with a truth, sorted by family.
     pub techniques: Vec<Technique>,
     /// Titles of the families.
@@ -37,7 +37,7 @@ pub struct Measured {
     pub failed: Vec<String>,
 }
 
-impl Measured {
+impl Measurements {
     /// Returns the lights of the techniques.
     pub(super) fn lights(&self) -> Vec<Light<'_>> {
         lights(&self.techniques, |family| self.titles.get(family).cloned().unwrap_or_else(|| family.to_owned()))

@@ -3,7 +3,7 @@
 use super::evaluators::Evaluator;
 use super::page::{Row, number, row, table};
 use super::questions::{Light, MAX_SHOWN};
-use super::report::{FOLDER, Measured};
+use super::report::{FOLDER, Measurements};
 use super::surfaces::SurfaceCost;
 use super::techniques::Technique;
 use super::timing::Spread;
@@ -12,7 +12,7 @@ use crate::accuracy::FrameCost;
 /// Error budgets: rms in 8-bit steps.
 const BUDGETS: [f64; 5] = [1.0, 2.0, 4.0, 8.0, 16.0];
 
-impl Measured {
+impl Measurements {
     /// Returns the section of a light with its charts.
     pub(super) fn light_section(light: &Light<'_>) -> String {
         let (name, title) = (&light.name, &light.title);

@@ -15,7 +15,7 @@ const FOLDER: &str = "stability";
 
 /// Measurements of an experiment.
 #[derive(Debug)]
-pub struct Measured {
+pub struct Measurement {
     /// The experiment that was measured.
     pub experiment: Experiment,
     /// Errors of each method at the values that the chart shows.
@@ -30,7 +30,7 @@ pub struct Measured {
 ///
 /// # Errors
 /// Returns an error if a scene is not valid, which is a fault of the experiment.
-pub fn measure(progress: &dyn Fn(usize, usize)) -> Result<Vec<Measured>, Box<SceneError>> {
+pub fn measure(progress: &dyn Fn(usize, usize)) -> Result<Vec<Measurement>, Box<SceneError>> {
     let experiments = experiments();
     let total = experiments.iter().map(|experiment| experiment.methods.len()).sum();
     let mut done = 0;
@@ -45,7 +45,7 @@ pub fn measure(progress: &dyn Fn(usize, usize)) -> Result<Vec<Measured>, Box<Sce
             done += 1;
         }
         let worst = worst(&experiment, &curves, &thresholds)?;
-        all.push(Measured { experiment, curves, thresholds, worst });
+        all.push(Measurement { experiment, curves, thresholds, worst });
     }
     progress(done, total);
     Ok(all)
@@ -82,7 +82,7 @@ fn worst(
 ///
 /// # Errors
 /// Returns an error if a picture cannot be encoded.
-pub fn files(all: &[Measured]) -> Result<(String, Vec<File>), OutputError> {
+pub fn files(all: &[Measurement]) -> Result<(String, Vec<File>), OutputError> {
     let (mut parts, mut files) = (Vec::new(), Vec::new());
     for measured in all {
         let experiment = &measured.experiment;
@@ -106,7 +106,7 @@ pub fn files(all: &[Measured]) -> Result<(String, Vec<File>), OutputError> {
     Ok((fill(TEMPLATE, &parts), files))
 }
 
-impl Measured {
+impl Measurement {
     /// Returns the table of the thresholds.
     fn rows(&self) -> Vec<Vec<String>> {
         let works = format!("{}: works at", self.experiment.parameter);
@@ -122,9 +122,9 @@ impl Measured {
 }
 
 /// Returns the points of all curves. What a sweep changes and the unit of its errors stand in `thresholds.json`.
-fn curve_rows(all: &[Measured]) -> Vec<Vec<String>> {
+fn curve_rows(all: &[Measurement]) -> Vec<Vec<String>> {
     let mut rows = vec![["sweep", "method", "value", "error"].map(str::to_owned).to_vec()];
-    for Measured { experiment, curves, .. } in all {
+    for Measurement { experiment, curves, .. } in all {
         for (method, curve) in experiment.methods.iter().zip(curves) {
             for (value, error) in experiment.shown.iter().zip(curve) {
                 let cells = [experiment.name, &method.name, &plain(*value), &number(*error)];
@@ -137,8 +137,8 @@ fn curve_rows(all: &[Measured]) -> Vec<Vec<String>> {
 
 /// Returns the chart of an experiment. Colours have an order: the first is that of the method that holds longest, the second that of the one that
 /// fails first.
-fn drawing(measured: &Measured) -> Drawing {
-    let Measured { experiment, curves, thresholds, worst: (first, value, outcome) } = measured;
+fn drawing(measured: &Measurement) -> Drawing {
+    let Measurement { experiment, curves, thresholds, worst: (first, value, outcome) } = measured;
     let order = ranked(&experiment.methods, thresholds);
     let series = order.iter().enumerate().map(|(rank, n)| {
         let color = match rank {
@@ -197,7 +197,7 @@ struct MethodRecord {
 }
 
 impl Record {
-    fn from_measured(measured: &Measured) -> Record {
+    fn from_measured(measured: &Measurement) -> Record {
         let Experiment { name, parameter, error, limit, ref methods, .. } = measured.experiment;
         let methods = methods.iter().zip(&measured.thresholds).map(|(method, threshold)| {
             let (works, fails) = threshold.ends(method);

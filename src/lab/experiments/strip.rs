@@ -41,7 +41,6 @@ pub(super) fn quad([from, to]: [f64; 2], [left, right]: [Vertex; 2]) -> [Vertex;
     [corner(from, 0.0, left), corner(to, 0.0, right), corner(to, 1.0, right), corner(from, 1.0, left)]
 }
 
-/// Returns a draw of quads.
 pub(super) fn quads(vertices: Vec<Vertex>, units: &[TextureUnit], combiners: Combiners) -> Draw {
     let indices = (0..vertices.len() as u32).collect();
     let mut draw = Draw { vertices: vertices.into(), indices, topology: Topology::Quads, combiners, ..Draw::default() };
@@ -140,7 +139,6 @@ pub(super) fn leaning(count: usize, tilt: impl Fn(usize) -> f64) -> Texture {
     colors((0..count).map(|n| encode([sin(tilt(n)), 0.0, cos(tilt(n))])))
 }
 
-/// Returns the root mean square.
 pub(super) fn root_mean_square(values: &[f64]) -> f64 {
     (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }

@@ -8,7 +8,7 @@ use ninebit::state::{
 
 use super::{ExportError, refuse};
 use crate::draw::texture::{BORDERED_SIDE, FACE_BYTES};
-use crate::memory::{LARGEST_MEMORY, Layout, bytes, raw, raw_depths};
+use crate::memory::{LARGEST_MEMORY, Layout, bytes, raw};
 
 /// Where the first thing lies.
 const FIRST: u32 = 0x0010_0000;
@@ -64,7 +64,7 @@ impl MemoryMap {
             };
             let colors = put(&target.contents, raw(target.format), pitch(target.width, target.format.bytes()))?;
             let format = target.depth.map_or(DepthFormat::Z24S8, |depth| depth.format);
-            let depths = put(&target.depth_contents, raw_depths(format), pitch(target.width, 4))?;
+            let depths = put(&target.depth_contents, format.texture_format(), pitch(target.width, 4))?;
             placed.surfaces.push(colors);
             placed.depths.push(depths);
         }

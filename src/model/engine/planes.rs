@@ -99,7 +99,7 @@ pub const FRAGMENT_NAMES: [&str; 3] = ["fragment.draw", "fragment.triangle", "fr
 /// # Errors
 /// The target or the draw does not exist, or the rectangle is not inside the target.
 pub fn planes(plan: &Plan, names: &[String], options: &PlaneOptions) -> Result<Vec<Plane>, TraceError> {
-    let wanted = Wanted::new(names);
+    let wanted = NameFilter::new(names);
     let record = |pixels| Values {
         wanted: &wanted,
         planes: vec![Plane::blank(pixels, options.ideal); names.len()],
@@ -121,8 +121,8 @@ pub fn planes(plan: &Plan, names: &[String], options: &PlaneOptions) -> Result<V
 /// # Errors
 /// Those of [`planes`].
 pub fn plane_names(plan: &Plan, options: &PlaneOptions) -> Result<BTreeMap<String, String>, TraceError> {
-    let area = Area::new(plan, options)?;
-    let pixels = u64::from(area.rectangle.width) * u64::from(area.rectangle.height);
+    let Rectangle { width, height, .. } = rectangle(plan, options)?;
+    let pixels = u64::from(width) * u64::from(height);
     let step = (pixels / 256).isqrt().max(1) as i64;
     let bands = observe::<i32, _>(plan, options, |(x, y)| x % step == 0 && y % step == 0, |_| Names::default())?;
     let mut names = BTreeMap::new();
@@ -185,7 +185,7 @@ impl Beginning {
 }
 
 /// Names whose values are kept, prepared for the comparison with every step of every pixel.
-struct Wanted<'a> {
+struct NameFilter<'a> {
     names: &'a [String],
     beginnings: Vec<Beginning>,
     /// Which of [`FRAGMENT_NAMES`] each name is.
@@ -194,20 +194,20 @@ struct Wanted<'a> {
     sorted: Vec<u128>,
 }
 
-impl<'a> Wanted<'a> {
-    fn new(names: &'a [String]) -> Wanted<'a> {
+impl<'a> NameFilter<'a> {
+    fn new(names: &'a [String]) -> NameFilter<'a> {
         let beginnings: Vec<Beginning> = names.iter().map(|name| Beginning::new(&[name])).collect();
         let mut sorted: Vec<u128> = beginnings.iter().map(|beginning| beginning.bytes).collect();
         sorted.sort_unstable();
         sorted.dedup();
         let own = names.iter().map(|name| FRAGMENT_NAMES.iter().position(|own| own == name)).collect();
-        Wanted { names, beginnings, own, sorted }
+        NameFilter { names, beginnings, own, sorted }
     }
 }
 
 /// Keeps the values of some names.
 struct Values<'a> {
-    wanted: &'a Wanted<'a>,
+    wanted: &'a NameFilter<'a>,
     planes: Vec<Plane>,
     /// Values of the fragment that is shaded.
     found: Vec<Option<Value>>,
@@ -273,30 +273,23 @@ impl Record for Names {
     fn end(&mut self, _: usize, _: [i64; 3]) {}
 }
 
-/// The pixels that are observed.
-struct Area {
-    target: usize,
-    rectangle: Rectangle,
-}
-
-impl Area {
-    fn new(plan: &Plan, options: &PlaneOptions) -> Result<Area, TraceError> {
-        let count = plan.targets.len();
-        let target = plan.targets.get(options.target).ok_or(TraceError::Target { target: options.target, count })?;
-        let (width, height) = (target.width, target.height);
-        let rectangle = options.rectangle.unwrap_or(Rectangle { x: 0, y: 0, width, height });
-        let (end, bottom) =
-            (u64::from(rectangle.x) + u64::from(rectangle.width), u64::from(rectangle.y) + u64::from(rectangle.height));
-        if end > u64::from(width) || bottom > u64::from(height) || rectangle.width == 0 || rectangle.height == 0 {
-            let last = |start: u32, count: u32| start.saturating_add(count.max(1) - 1);
-            let (x, y) = (last(rectangle.x, rectangle.width), last(rectangle.y, rectangle.height));
-            return Err(TraceError::Pixel { x, y, target: target.name.clone(), width, height });
-        }
-        if let Some(draw) = options.draw.filter(|draw| *draw >= plan.draws.len()) {
-            return Err(TraceError::Draw { draw, count: plan.draws.len() });
-        }
-        Ok(Area { target: options.target, rectangle })
+/// Returns the pixels that are observed, all of them inside the target.
+fn rectangle(plan: &Plan, options: &PlaneOptions) -> Result<Rectangle, TraceError> {
+    let count = plan.targets.len();
+    let target = plan.targets.get(options.target).ok_or(TraceError::Target { target: options.target, count })?;
+    let (width, height) = (target.width, target.height);
+    let rectangle = options.rectangle.unwrap_or(Rectangle { x: 0, y: 0, width, height });
+    let (end, bottom) =
+        (u64::from(rectangle.x) + u64::from(rectangle.width), u64::from(rectangle.y) + u64::from(rectangle.height));
+    if end > u64::from(width) || bottom > u64::from(height) || rectangle.width == 0 || rectangle.height == 0 {
+        let last = |start: u32, count: u32| start.saturating_add(count.max(1) - 1);
+        let (x, y) = (last(rectangle.x, rectangle.width), last(rectangle.y, rectangle.height));
+        return Err(TraceError::Pixel { x, y, target: target.name.clone(), width, height });
     }
+    if let Some(draw) = options.draw.filter(|draw| *draw >= plan.draws.len()) {
+        return Err(TraceError::Draw { draw, count: plan.draws.len() });
+    }
+    Ok(rectangle)
 }
 
 /// Some rows of the rectangle.
@@ -313,15 +306,14 @@ fn observe<L: Lane + Sync, R: Record>(
     chosen: impl Fn((i64, i64)) -> bool + Sync,
     record: impl Fn(usize) -> R + Sync,
 ) -> Result<Vec<R>, TraceError> {
-    let area = Area::new(plan, options)?;
-    let Rectangle { x, y, width, height } = area.rectangle;
-    let target = &plan.targets[area.target];
+    let Rectangle { x, y, width, height } = rectangle(plan, options)?;
+    let target = &plan.targets[options.target];
     let mut frames = cleared(plan);
     // Whole frames are needed only if a draw reads one.
     let rendered = plan.textures.iter().any(|texture| texture.image.target().is_some());
     let band = |first: u32| {
         let rows = height.min(first - y + BAND as u32) - (first - y);
-        let surface = &frames.surfaces[area.target];
+        let surface = &frames.surfaces[options.target];
         let pixels =
             (first..first + rows).flat_map(|row| (x..x + width).map(move |column| (column, row))).map(|(i, j)| {
                 let at = j as usize * target.width as usize + i as usize;
@@ -335,7 +327,7 @@ fn observe<L: Lane + Sync, R: Record>(
     let mut bands: Vec<Band<R>> = (y..y + height).step_by(BAND).map(band).collect();
     let work = || {
         let mut finished = 0;
-        for (index, planned) in plan.draws.iter().enumerate().filter(|(_, planned)| planned.target == area.target) {
+        for (index, planned) in plan.draws.iter().enumerate().filter(|(_, planned)| planned.target == options.target) {
             if rendered {
                 (finished..index).for_each(|before| draw_defined(plan, before, &mut frames));
                 finished = index;
@@ -345,7 +337,8 @@ fn observe<L: Lane + Sync, R: Record>(
             let counts = options.draw.is_none_or(|only| only == index);
             let columns = (i64::from(x), i64::from(x + width));
             let draw = |band: &mut Band<R>| {
-                let drawn = Drawn { plan, planned, index, images: &images, columns, counts, dropped: options.dropped };
+                let drawn =
+                    ObservedDraw { plan, planned, index, images: &images, columns, counts, dropped: options.dropped };
                 drawn.shade(band, &chosen);
             };
             #[cfg(feature = "threads")]
@@ -359,7 +352,7 @@ fn observe<L: Lane + Sync, R: Record>(
 }
 
 /// A draw, and which of its fragments count.
-struct Drawn<'a, L> {
+struct ObservedDraw<'a, L> {
     plan: &'a Plan,
     planned: &'a PlannedDraw,
     index: usize,
@@ -369,7 +362,7 @@ struct Drawn<'a, L> {
     dropped: bool,
 }
 
-impl<L: Lane> Drawn<'_, L> {
+impl<L: Lane> ObservedDraw<'_, L> {
     fn shade<R: Record>(&self, band: &mut Band<R>, chosen: &impl Fn((i64, i64)) -> bool) {
         let (first, end) = self.columns;
         let width = (end - first) as usize;

@@ -3,7 +3,7 @@
 use crate::diagnostic::{Diagnostic, needs_nv2a, only_nv2a};
 use crate::place::Span;
 use crate::shown;
-use crate::state::{AddressMode, LARGEST_VOLUME, Named, Profile, TextureFormat, TextureKind};
+use crate::state::{AddressMode, LARGEST_VOLUME, Named, Profile, TextureFormat, TextureKind, TextureUnit};
 
 /// Checks textures for a chip. Each check returns the finding at the given place, or `None` if the texture is legal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,7 +27,50 @@ pub fn no_texels(what: &str, sides: [u32; 2], place: Option<Span>) -> Diagnostic
         .help("write at least 1 for both")
 }
 
+/// Returns the finding that a colour key stands under a filter, or `None` if the filters are nearest.
+pub fn filtered_key(unit: &TextureUnit, place: Option<Span>) -> Option<Diagnostic> {
+    (!unit.is_nearest()).then(|| {
+        Diagnostic::error("NB0402", place, "it is not known what a colour key does under a filter")
+            .label("cannot be modelled")
+            .rule("KEY-1")
+            .help("write `min_filter: Nearest, mag_filter: Nearest`, as programs with keyed textures did")
+    })
+}
+
+/// Returns the finding that a texture of indices has no palette.
+pub fn missing_palette(name: &str, place: Option<Span>) -> Diagnostic {
+    Diagnostic::error("NB0234", place, format!("the texture `{name}` is of format P8 and has no palette"))
+        .label("which colours?")
+        .rule("TEX-1")
+        .help("write `palette: \"...\"` in the texture or in this unit")
+}
+
+/// Returns the finding that a texture's format reads no palette.
+pub fn unread_palette(format: TextureFormat, place: Option<Span>) -> Diagnostic {
+    Diagnostic::error("NB0234", place, format!("a texture of format {} reads no palette", format.name()))
+        .label("never read")
+        .rule("TEX-1")
+        .help("leave `palette` out, or write `format: P8`")
+}
+
 impl TextureChecks {
+    /// Checks the address modes along s and t of a rectangle.
+    pub fn rectangle_modes(
+        self,
+        kind: TextureKind,
+        modes: [AddressMode; 2],
+        place: Option<Span>,
+    ) -> Option<Diagnostic> {
+        let other = modes.into_iter().find(|mode| *mode != AddressMode::ClampToEdge)?;
+        (kind == TextureKind::Rectangle && self.profile == Profile::Nv10).then(|| {
+            let message = format!("a rectangle texture cannot be addressed with {} on Nv10", other.name());
+            Diagnostic::error("NB0330", place, message)
+                .label("not as a rectangle")
+                .rule("TEX-7")
+                .help("write `address: ClampToEdge`, or `profile: Nv2a`")
+        })
+    }
+
     /// Checks that the chip has the format.
     pub fn format(self, format: TextureFormat, place: Option<Span>) -> Option<Diagnostic> {
         let what = format!("texture format {}", format.name());

@@ -20,7 +20,7 @@ const MAX_ERRORS: usize = 8;
 
 /// Returns all errors of a scene, except for those of its vertices' positions.
 pub(super) fn check(scene: &Scene, limits: &Limits) -> Vec<PlanError> {
-    let mut check = Check { scene, limits, draw: None, errors: Vec::new() };
+    let mut check = Check { scene, limits, draw: None, unit: None, errors: Vec::new() };
     check.counts();
     check.targets();
     check.palettes();
@@ -43,6 +43,8 @@ struct Check<'s> {
     limits: &'s Limits,
     /// Index of the draw that is being checked.
     draw: Option<usize>,
+    /// Index of its texture unit that is being checked.
+    unit: Option<usize>,
     errors: Vec<PlanError>,
 }
 
@@ -58,7 +60,9 @@ impl Check<'_> {
     }
 
     fn found(&mut self, finding: Diagnostic) {
-        self.refuse(finding.code, finding.rule, finding.message, finding.help.unwrap_or_default());
+        let Diagnostic { code, rule, message, help, .. } = finding;
+        let error = PlanError::new(code, rule, message, help.unwrap_or_default());
+        self.errors.push(PlanError { draw: self.draw, unit: self.unit, ..error });
     }
 
     /// Refuses a feature that only nv2a has.
@@ -137,8 +141,7 @@ impl Check<'_> {
                 let what = format!("the depth buffer of target `{name}` begins with");
                 match depth.map(|depth| depth.format) {
                     Some(format) => {
-                        let bits = if format.has_stencil() { 32 } else { format.bits() };
-                        self.contents(target, words, (&what, "DEP-2"), (bits, format.name()));
+                        self.contents(target, words, (&what, "DEP-2"), (format.stored_bits(), format.name()));
                     }
                     None => {
                         let message = format!("target `{name}` has contents of a depth buffer, and no depth buffer");
@@ -318,22 +321,15 @@ impl Check<'_> {
     }
 
     fn operations(&mut self, draw: &Draw, target: &Target) {
-        if draw.depth_test.is_some() && target.depth.is_none() {
-            let message = format!("target `{}` has no depth buffer", target.name);
-            self.refuse("NB0216", "DEP-2", message, "give the target `depth`, or leave the depth test out");
-        }
         if let Some(test) = &draw.depth_test {
+            self.accept(legality::draw::depth_test(target, None));
             self.depth_test(draw, test);
         }
-        if draw.stencil_test.is_some() && !target.depth.is_some_and(|depth| depth.format.has_stencil()) {
-            let message = format!("target `{}` has no stencil", target.name);
-            self.refuse("NB0216", "STN-1", message, "give the target `depth` Z24S8, or leave the stencil test out");
+        if draw.stencil_test.is_some() {
+            self.accept(legality::draw::stencil_test(target, None));
         }
-        if let Some(clip) = &draw.window_clip
-            && !(1..=WINDOW_CLIP_RECTANGLES).contains(&clip.rectangles.len())
-        {
-            let message = format!("the window clip has {} rectangles", clip.rectangles.len());
-            self.refuse("NB0211", "CLP-1", message, format!("take 1 to {WINDOW_CLIP_RECTANGLES}"));
+        if let Some(clip) = &draw.window_clip {
+            self.accept(legality::draw::window_clip(clip.rectangles.len(), None));
         }
         let Some(blend) = draw.blend else { return };
         self.accept(legality::surface::blending(target.format, None));
@@ -359,10 +355,11 @@ impl Check<'_> {
             self.only_nv2a("NB0340", "TSH-10", !conventional, "a texture shader");
             self.stage(draw, index, stage);
             if let Some(unit) = unit {
+                self.unit = Some(index);
                 self.unit(draw, index, unit, stage);
+                self.unit = None;
             } else if stage.operation.samples() {
-                let message = format!("stage {index} samples, but its unit has no texture");
-                self.refuse("NB0343", "TSH-10", message, "bind a texture to the unit, or take the operation None");
+                self.found(legality::shader::unbound(index, None));
             }
         }
     }
@@ -375,15 +372,9 @@ impl Check<'_> {
             self.refuse("NB0319", "TSH-10", message, "a vertex has the sets 0 to 3");
         }
         if stage.previous >= index.max(1) {
-            let message = format!("stage {index} reads unit {}", stage.previous);
-            self.refuse("NB0342", "TSH-10", message, "`previous` is a unit before this one; 0 at the first");
+            self.found(legality::shader::later_unit(index, stage.previous, None));
         }
-        if let Some(help) = ShaderStage::misplaced(&draw.texture_shader, index) {
-            self.refuse("NB0341", "TSH-10", format!("{name} cannot stand at stage {index} here"), help);
-        } else if ShaderStage::reads_too_late(&draw.texture_shader, index) {
-            let message = "with DotReflectDiffuse before it, stage 3 cannot read unit 2";
-            self.refuse("NB0342", "TSH-10", message, "let `previous` be 0 or 1");
-        }
+        self.accept(legality::shader::order(&draw.texture_shader, index, None, None));
         let finite = match stage.operation {
             ShaderOperation::BumpEnvironment { matrix, luminance } => {
                 matrix.iter().chain(luminance.iter().flatten()).all(|number| number.is_finite())
@@ -410,27 +401,17 @@ impl Check<'_> {
             return;
         };
         let Texture { name, kind, format, image } = texture;
-        if stage.operation.samples() && !stage.operation.kinds().contains(kind) {
-            let message = format!("{} does not sample a texture of kind {}", stage.operation.name(), kind.name());
-            self.refuse(
-                "NB0343",
-                "TSH-10",
-                message,
-                "give the unit another texture, or take the operation for this kind",
-            );
+        if stage.operation.samples() {
+            self.accept(legality::shader::kind(&stage.operation, *kind, None));
         }
         match unit.palette {
             Some(palette) if *format == TextureFormat::P8 && palette >= self.scene.palettes.len() => {
                 let (message, help) = missing("palette", palette, self.scene.palettes.len());
                 self.refuse("NB0212", "TEX-1", format!("unit {index} reads {message}"), help);
             }
-            None if *format == TextureFormat::P8 => {
-                let message = format!("texture `{name}` is of format P8, and unit {index} has no palette");
-                self.refuse("NB0234", "TEX-1", message, "give the unit a `palette`");
-            }
+            None if *format == TextureFormat::P8 => self.found(legality::texture::missing_palette(name, None)),
             Some(_) if *format != TextureFormat::P8 => {
-                let message = format!("texture `{name}` of format {} reads no palette", format.name());
-                self.refuse("NB0234", "TEX-1", message, format!("let `palette` of unit {index} be None"));
+                self.accepts(texture, Some(legality::texture::unread_palette(*format, None)));
             }
             _ => {}
         }
@@ -438,9 +419,8 @@ impl Check<'_> {
             let message = format!("unit {index} samples the target that the draw goes into");
             self.refuse("NB0217", None, message, "draw into another target and sample that one");
         }
-        if unit.color_key.is_some() && !unit.is_nearest() {
-            let message = format!("unit {index} has a colour key and a filter: what comes out is not known");
-            self.refuse("NB0402", "KEY-1", message, "take the filter Nearest for minification and magnification");
+        if unit.color_key.is_some() {
+            self.accept(legality::texture::filtered_key(unit, None));
         }
         if unit.color_key.is_some() && matches!(format, TextureFormat::R16B16 | TextureFormat::Y16) {
             let message = format!("a colour key on the format {} is not known", format.name());
@@ -452,12 +432,9 @@ impl Check<'_> {
             let findings = modes.map(|mode| self.texture_checks().address_mode(mode, None));
             self.accept(findings.into_iter().flatten().next());
             self.only_nv2a("NB0318", "TEX-18", unit.signed != [false; 4], "a signed texture channel");
-            if *kind == TextureKind::Rectangle && modes != [AddressMode::ClampToEdge; 2] {
-                let message =
-                    format!("rectangle texture `{name}` is addressed with another mode than ClampToEdge on Nv10");
-                self.refuse("NB0330", "TEX-7", message, "take ClampToEdge for s and t");
-            }
         }
+        let finding = self.texture_checks().rectangle_modes(*kind, modes, None);
+        self.accepts(texture, finding);
         let TextureUnit { lod_bias, min_lod, max_lod, .. } = *unit;
         if !(-4096..=4095).contains(&lod_bias) || !(0..=4095).contains(&max_lod) || !(0..=max_lod).contains(&min_lod) {
             let message = format!("unit {index} has lod_bias {lod_bias}, min_lod {min_lod}, max_lod {max_lod}");

@@ -34,9 +34,9 @@ pub use primitive::{
     VertexColor, VertexProgram, Viewport,
 };
 pub use rop::{
-    AlphaTest, Blend, BlendEquation, BlendFactor, CompareFunction, DepthBuffer, DepthFormat, DepthRange, DepthTest,
-    PolygonOffset, StencilOperation, StencilTest, SurfaceFormat, Target, VertexDepths, WINDOW_CLIP_RECTANGLES,
-    WindowClip, depth_of, depth_stencil, stencil_of,
+    AlphaTest, Blend, BlendEquation, BlendFactor, Buffer, CompareFunction, DepthBuffer, DepthFormat, DepthRange,
+    DepthTest, PolygonOffset, StencilOperation, StencilTest, SurfaceFormat, Target, VertexDepths,
+    WINDOW_CLIP_RECTANGLES, WindowClip, depth_of, depth_stencil, stencil_of,
 };
 pub use shader::{DotMapping, ShaderOperation, ShaderStage};
 pub use texture::{

@@ -310,6 +310,15 @@ impl SurfaceFormat {
     }
 }
 
+/// A buffer of a target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Buffer {
+    /// Colours.
+    Color,
+    /// Depths and stencils.
+    Depth,
+}
+
 named! {
     /// Depth buffer formats (DEP-2, DEP-3).
     pub enum DepthFormat {
@@ -325,6 +334,21 @@ named! {
 }
 
 impl DepthFormat {
+    /// Returns the texture format whose texels are these words.
+    pub fn texture_format(self) -> TextureFormat {
+        match self {
+            DepthFormat::Z16 => TextureFormat::Z16,
+            DepthFormat::Z24S8 => TextureFormat::Z24S8,
+            DepthFormat::Z16F => TextureFormat::Z16F,
+            DepthFormat::Z24S8F => TextureFormat::Z24S8F,
+        }
+    }
+
+    /// Returns the bits of a stored word: depth and stencil.
+    pub fn stored_bits(self) -> u32 {
+        if self.has_stencil() { 32 } else { self.bits() }
+    }
+
     /// Returns the bits of depth.
     pub fn bits(self) -> u32 {
         match self {

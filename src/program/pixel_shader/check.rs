@@ -11,7 +11,7 @@ const MAX_FINDINGS: usize = 64;
 
 /// Checks a shader against the rules.
 pub(super) fn check(program: &PixelShader) -> Vec<Diagnostic> {
-    let mut check = Check { program, findings: Vec::new(), known: Known::default() };
+    let mut check = Check { program, findings: Vec::new(), known: DefinedRegisters::default() };
     check.definitions();
     check.textures();
     check.count();
@@ -32,13 +32,13 @@ pub(super) fn check(program: &PixelShader) -> Vec<Diagnostic> {
 
 /// The registers that hold a value: colour and alpha of r0, r1 and t0 to t3.
 #[derive(Clone, Copy, Debug, Default)]
-struct Known {
+struct DefinedRegisters {
     temporary: [[bool; 2]; 2],
     texture: [[bool; 2]; 4],
 }
 
-impl Known {
-    fn of(&self, register: ShaderRegister) -> [bool; 2] {
+impl DefinedRegisters {
+    fn portions(&self, register: ShaderRegister) -> [bool; 2] {
         match register.bank {
             Bank::Constant | Bank::Color => [true; 2],
             Bank::Temporary => self.temporary.get(usize::from(register.index)).copied().unwrap_or_default(),
@@ -63,7 +63,7 @@ impl Known {
 struct Check<'p> {
     program: &'p PixelShader,
     findings: Vec<Diagnostic>,
-    known: Known,
+    known: DefinedRegisters,
 }
 
 impl Check<'_> {
@@ -131,7 +131,7 @@ impl Check<'_> {
 
     fn texture_source(&mut self, texture: &TextureInstruction, source: &Spanned<TextureSource>) {
         let (unit, from) = (texture.unit.value, source.value.unit);
-        if self.known.of(ShaderRegister { bank: Bank::Texture, index: from })[0] {
+        if self.known.portions(ShaderRegister { bank: Bank::Texture, index: from })[0] {
             return;
         }
         let message = format!("{} t{unit} reads t{from}, {}", texture.operation.name(), self.emptiness(from));
@@ -316,7 +316,7 @@ impl Check<'_> {
     /// Checks that a register is written before it is read.
     fn read(&mut self, instruction: &Arithmetic, source: &Source, span: &Span) {
         let Reads { color, alpha } = instruction.reads(source);
-        let [has_color, has_alpha] = self.known.of(source.register);
+        let [has_color, has_alpha] = self.known.portions(source.register);
         let part = match (color && !has_color, alpha && !has_alpha) {
             (false, false) => return,
             (true, false) if has_alpha => "the colour of ",

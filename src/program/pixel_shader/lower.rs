@@ -56,13 +56,13 @@ pub struct UnitUse {
 }
 
 /// Result of lowering a shader, with the texture shader; `None` for units that no instruction loads.
-pub type Lowered = crate::cascade::Lowered<[Option<UnitUse>; TEXTURE_UNITS]>;
+pub type LoweredProgram = crate::cascade::LoweredProgram<[Option<UnitUse>; TEXTURE_UNITS]>;
 
 /// Lowers a shader for a draw.
 ///
 /// # Errors
 /// Findings about what breaks the rules of the language, and about what the chip cannot do.
-pub fn lower(program: &PixelShader, context: &Context) -> Result<Lowered, Vec<Diagnostic>> {
+pub fn lower(program: &PixelShader, context: &Context) -> Result<LoweredProgram, Vec<Diagnostic>> {
     let mut findings = check::check(program);
     findings.retain(|finding| finding.severity == Severity::Error);
     if !findings.is_empty() {
@@ -88,7 +88,7 @@ pub fn lower(program: &PixelShader, context: &Context) -> Result<Lowered, Vec<Di
         lowering.slot(slot, live);
     }
     let (combiners, origins) = lowering.finish(program, context.fog)?;
-    Ok(Lowered { combiners, origins, units })
+    Ok(LoweredProgram { combiners, origins, units })
 }
 
 /// What is known about the colour or the alpha of a register.

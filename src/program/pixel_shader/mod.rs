@@ -20,7 +20,7 @@ use crate::Span;
 use ninebit::diagnostic::{Diagnostic, Severity};
 use ninebit::state::{Named, Scale, named};
 
-pub use lower::{Bump, Context, Lowered, UnitUse, lower};
+pub use lower::{Bump, Context, LoweredProgram, UnitUse, lower};
 pub use print::{instruction, print};
 
 /// Number of constant registers of the language.

@@ -52,7 +52,6 @@ fn before(slot: &[Arithmetic], after: Set) -> Set {
     after & !(written[0] & written[1]) | read
 }
 
-/// Returns whether a register is in a set.
 pub(super) fn contains(set: Set, register: Register) -> bool {
     set & bit(register) != 0
 }

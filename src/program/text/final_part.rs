@@ -20,7 +20,6 @@ const ZERO: FinalInput = FinalInput { register: FinalRegister::Zero, component: 
 const ONE: FinalInput = FinalInput { register: FinalRegister::Zero, component: Component::Rgb, invert: true };
 
 impl Final {
-    /// Reads one statement.
     pub(super) fn statement(&mut self, parser: &mut Parser<'_>) -> Result<(), GivenUp> {
         let start = parser.cursor.span();
         match parser.cursor.word() {

@@ -46,7 +46,6 @@ impl PortionReader {
         Place::General { stage: self.stage, alpha: self.alpha, part }
     }
 
-    /// Reads one statement.
     pub(super) fn statement(&mut self, parser: &mut Parser<'_>) -> Read<()> {
         let span = parser.cursor.span();
         let word = parser.cursor.word();

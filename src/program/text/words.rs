@@ -19,7 +19,6 @@ pub(super) fn registers() -> impl Iterator<Item = &'static str> {
     REGISTERS.split(' ')
 }
 
-/// Finds a register by its name.
 pub(super) fn find(name: &str) -> Option<FinalRegister> {
     registers().position(|known| known == name).map(|number| FinalRegister::ALL[number])
 }

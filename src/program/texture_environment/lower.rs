@@ -1,7 +1,7 @@
 //! Lowers the texture environment to general stages: units, base formats and the modes that are older than combining.
 
 use super::*;
-use crate::cascade::{Alpha, Argument, Cascade, Channel, Destination, End, Equation, Lowered, Source};
+use crate::cascade::{Alpha, Argument, Cascade, Channel, Destination, End, Equation, LoweredProgram, Source};
 use ninebit::state::{Named, Profile, StageOrigin};
 
 /// State of the draw that the lowering depends on.
@@ -21,7 +21,7 @@ pub struct Context {
 ///
 /// # Errors
 /// Findings about everything that the chip cannot do.
-pub fn lower(program: &TextureEnvironment, context: &Context) -> Result<Lowered, Vec<Diagnostic>> {
+pub fn lower(program: &TextureEnvironment, context: &Context) -> Result<LoweredProgram, Vec<Diagnostic>> {
     let mut findings = Vec::new();
     let mut cascade = Cascade::new(context.profile, context.signed);
     let initial = Unit::initial();

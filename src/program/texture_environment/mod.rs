@@ -11,7 +11,7 @@ use crate::{Span, Spanned};
 use ninebit::diagnostic::Diagnostic;
 use ninebit::state::{Scale, TEXTURE_UNITS, TextureFormat, named};
 
-pub use crate::cascade::Lowered;
+pub use crate::cascade::LoweredProgram;
 pub use lower::{Context, lower};
 pub use text::parse;
 

@@ -34,13 +34,13 @@ pub struct UnitChange {
 }
 
 /// Result of lowering texture stages, with the changes of the texture units.
-pub type Lowered = crate::cascade::Lowered<[UnitChange; TEXTURE_UNITS]>;
+pub type LoweredProgram = crate::cascade::LoweredProgram<[UnitChange; TEXTURE_UNITS]>;
 
 /// Lowers the stages for a draw.
 ///
 /// # Errors
 /// Findings about everything that the chip cannot do, or that this version does not support.
-pub fn lower(program: &TextureStages, context: &Context) -> Result<Lowered, Vec<Diagnostic>> {
+pub fn lower(program: &TextureStages, context: &Context) -> Result<LoweredProgram, Vec<Diagnostic>> {
     let active = program.stages.iter().take_while(|stage| stage.color.operation.value != Operation::Disable).count();
     let transforms = program.stages.iter().any(|stage| !stage.transform_flags.span.is_empty());
     let mut walk = Walk { program, context, active, transforms, findings: Vec::new(), units: Default::default() };

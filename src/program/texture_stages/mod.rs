@@ -10,7 +10,7 @@ mod text;
 use crate::{Span, Spanned};
 use ninebit::state::named;
 
-pub use lower::{Context, Lowered, UnitChange, lower};
+pub use lower::{Context, LoweredProgram, UnitChange, lower};
 pub use operation::Operation;
 pub use text::parse;
 

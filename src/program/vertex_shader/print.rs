@@ -22,7 +22,6 @@ pub fn print(shader: &VertexShader) -> String {
     out
 }
 
-/// Returns the letters of components.
 pub(super) fn letters(components: impl IntoIterator<Item = usize>) -> String {
     components.into_iter().filter_map(|k| "xyzw".chars().nth(k)).collect()
 }
@@ -43,7 +42,6 @@ fn destination(destination: &Destination) -> String {
     format!("{name}.{}", letters((0..4).filter(|k| destination.mask >> k & 1 != 0)))
 }
 
-/// Returns the name of a source register.
 pub(super) fn name(register: SourceRegister) -> String {
     match register {
         SourceRegister::Input(index) => format!("v{index}"),

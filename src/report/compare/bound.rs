@@ -12,7 +12,7 @@ const NEAREST: f64 = 127.0 / 255.0;
 
 /// Returns the lowest and highest error, the definition minus the ideal, in steps (for weights in 256ths). Returns `None` where no bound is stated:
 /// the error of TEX-15 depends on how small q becomes, and the taps of TEX-17 depend on that.
-pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
+pub fn error_range(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
     let policies = &plan.policies;
     let symmetric = |n: f64| Some((-n, n));
     let floor = |slack: f64| Some((-1.0 - slack, slack));

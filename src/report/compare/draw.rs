@@ -132,7 +132,6 @@ pub(super) struct Draw<'a, L> {
 
 /// Evaluation of the definition and the ideal in one mode.
 pub(super) trait Method {
-    /// Lane of the ideal.
     type Lane: Lane + Send + Sync;
 
     /// Draws the part of a draw that lies in a band.
@@ -423,7 +422,7 @@ fn summed(plan: &Plan, options: &CompareOptions, outcome: Outcome) -> Comparison
         parts,
         unexplained: if mode == Mode::Follow { outcome.unexplained } else { 0.0 },
         rules: rules
-            .map(|(errors, rule)| RuleError { rule: *rule, errors: *errors, bound: bound::of(*rule, plan) })
+            .map(|(errors, rule)| RuleError { rule: *rule, errors: *errors, bound: bound::error_range(*rule, plan) })
             .collect(),
         decisions: decisions
             .map(|([taken, differing], decision)| Decided { decision: *decision, taken: *taken, differing: *differing })

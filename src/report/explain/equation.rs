@@ -65,7 +65,7 @@ struct Printed {
 }
 
 impl Printed {
-    fn of(&mut self, term: Term) -> Text {
+    fn push(&mut self, term: Term) -> Text {
         self.terms.push(term);
         Text(self.terms.len() - 1)
     }
@@ -80,11 +80,11 @@ impl Printed {
 
     /// Returns registers that hold their own names: colour, blue and alpha as the component that an input reads.
     fn registers(&mut self) -> Registers<Text> {
-        let zero = self.of(Term::Zero);
+        let zero = self.push(Term::Zero);
         let mut registers = Registers::from_value(zero);
         for of in Register::ALL.iter().filter(|of| **of != Register::Zero) {
             for (channel, suffix) in ["", "", ".b", ".a"].into_iter().enumerate() {
-                let name = self.of(Term::Plain(format!("{}{suffix}", register(*of))));
+                let name = self.push(Term::Plain(format!("{}{suffix}", register(*of))));
                 registers.write(*of, channel, name);
             }
         }
@@ -97,7 +97,7 @@ impl Printed {
             (Term::One, x) | (x, Term::One) => x,
             (a, b) => Term::Product(format!("{} * {}", a.factor(), b.factor())),
         };
-        self.of(term)
+        self.push(term)
     }
 }
 
@@ -111,7 +111,7 @@ impl Algebra for Printed {
         &self.policies
     }
     fn byte(&mut self, value: u8) -> Text {
-        self.of(match value {
+        self.push(match value {
             0 => Term::Zero,
             255 => Term::One,
             byte => Term::Plain(format!("{byte}/255")),
@@ -128,7 +128,7 @@ impl Algebra for Printed {
             (InputMapping::SignedIdentity, term) => term,
             (mapping, _) => Term::Plain(mapped(mapping, name)),
         };
-        self.of(term)
+        self.push(term)
     }
     fn plain(&mut self, x: Text) -> Text {
         x
@@ -138,7 +138,7 @@ impl Algebra for Printed {
             return self.times(a, b);
         }
         let term = Term::Product(format!("{} . {}", self.term(a).factor(), self.term(b).factor()));
-        self.of(term)
+        self.push(term)
     }
     fn add(&mut self, rule: Rule, a: Text, b: Text) -> Text {
         // The first of a dot product's three terms stands for all.
@@ -158,7 +158,7 @@ impl Algebra for Printed {
     }
     fn select(&mut self, takes_cd: &'static str, cd: Text, ab: Text) -> Text {
         let term = Term::Plain(format!("({takes_cd} ? {} : {})", self.text(cd), self.text(ab)));
-        self.of(term)
+        self.push(term)
     }
     fn rounded(&mut self, sum: Text) -> Text {
         sum
@@ -178,14 +178,14 @@ impl Algebra for Printed {
             Scale::Four => times("4", biased),
             Scale::Half => times("1/2", biased),
         };
-        self.of(term)
+        self.push(term)
     }
     fn saturated(&mut self, x: Text) -> Text {
         x
     }
     fn max0(&mut self, x: Text) -> Text {
         match self.term(x) {
-            Term::Plain(name) => self.of(Term::Unsigned(name)),
+            Term::Plain(name) => self.push(Term::Unsigned(name)),
             _ => x,
         }
     }
@@ -196,18 +196,18 @@ impl Algebra for Printed {
             Term::Unsigned(name) => Term::Plain(format!("unsigned_invert({name})")),
             x => Term::Sum(format!("1 - {}", x.factor())),
         };
-        self.of(term)
+        self.push(term)
     }
     fn plus(&mut self, a: Text, b: Text) -> Text {
         match (self.term(a), self.term(b)) {
             (Term::Zero, _) => b,
             (_, Term::Zero) => a,
-            (a, b) => self.of(Term::Above(format!("{} + {}", a.sum(), b.sum()))),
+            (a, b) => self.push(Term::Above(format!("{} + {}", a.sum(), b.sum()))),
         }
     }
     fn minus(&mut self, a: Text, b: Text) -> Text {
         let term = Term::Sum(format!("{} - {}", self.text(a), self.term(b).factor()));
-        self.of(term)
+        self.push(term)
     }
     fn least(&mut self, a: Text, b: Text) -> Text {
         let term = match (self.term(a), self.term(b)) {
@@ -217,11 +217,11 @@ impl Algebra for Printed {
             (a, Term::One) => a,
             (a, b) => Term::Plain(format!("min({}, {})", a.sum(), b.sum())),
         };
-        self.of(term)
+        self.push(term)
     }
     fn greatest(&mut self, a: Text, b: Text) -> Text {
         let term = Term::Plain(format!("max({}, {})", self.text(a), self.text(b)));
-        self.of(term)
+        self.push(term)
     }
     fn clamped(&mut self, x: Text) -> Text {
         x
@@ -231,7 +231,7 @@ impl Algebra for Printed {
     }
     fn signed_byte(&mut self, x: Text) -> Text {
         let term = Term::Plain(format!("signed byte({})", self.text(x)));
-        self.of(term)
+        self.push(term)
     }
 }
 
@@ -298,7 +298,7 @@ pub(super) fn final_combiner(planned: &PlannedFinal) -> Vec<String> {
 pub(super) fn blend(planned: &PlannedDraw) -> Option<String> {
     let state = planned.blend.as_ref()?;
     let mut printed = Printed::default();
-    let mut color = |name: &str| ["", "", "", ".a"].map(|suffix| printed.of(Term::Plain(format!("{name}{suffix}"))));
+    let mut color = |name: &str| ["", "", "", ".a"].map(|suffix| printed.push(Term::Plain(format!("{name}{suffix}"))));
     let (source, destination, constant) = (color("fragment"), color("destination"), color("constant"));
     // Alpha is blended like colour, except that one factor is 1 there.
     let channel = if planned.blended & 7 == 0 { 3 } else { 0 };

@@ -52,7 +52,7 @@ struct Run {
 }
 
 /// Result of a search.
-pub(super) struct Found {
+pub(super) struct RegionList {
     pub(super) kept: Vec<Region>,
     pub(super) count: u64,
     pub(super) pixels: u64,
@@ -152,12 +152,12 @@ impl Regions {
         self.kept.truncate(self.keep);
     }
 
-    pub(super) fn finish(mut self) -> Found {
+    pub(super) fn finish(mut self) -> RegionList {
         for region in std::mem::take(&mut self.open) {
             self.complete(region);
         }
         self.cut();
-        Found { kept: self.kept, count: self.count, pixels: self.pixels }
+        RegionList { kept: self.kept, count: self.count, pixels: self.pixels }
     }
 }
 

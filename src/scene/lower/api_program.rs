@@ -9,7 +9,6 @@ use ninebit_program::Spanned;
 use ninebit_program::texture_environment::{self as environment, BaseFormat, TextureEnvironment};
 use ninebit_program::texture_stages::{self as stages, TextureStages};
 
-/// A program of an API.
 pub(super) enum ApiProgram {
     /// Texture stages of Direct3D, and the text they were written in, if any.
     Stages(TextureStages, Option<ProgramText>),
@@ -34,16 +33,16 @@ pub(super) struct Around {
 }
 
 /// A program that has been lowered for a draw.
-pub(super) struct Lowered {
+pub(super) struct DrawProgram {
     pub(super) combiners: Combiners,
     pub(super) origins: Vec<StageOrigin>,
     pub(super) shader: [ShaderStage; TEXTURE_UNITS],
 }
 
-impl Lowered {
+impl DrawProgram {
     /// Wraps combiners that were written as such, which leave the units unchanged.
     pub(super) fn as_written(combiners: Combiners, units: &Units) -> Self {
-        Lowered { combiners, origins: Vec::new(), shader: units.shader }
+        DrawProgram { combiners, origins: Vec::new(), shader: units.shader }
     }
 }
 
@@ -54,7 +53,7 @@ impl ApiProgram {
     }
 
     /// Lowers the program for a draw. If it cannot be lowered, records the findings and returns the default program.
-    pub(super) fn lower(&self, reader: &mut Reader<'_>, units: &Units, around: &mut Around) -> Lowered {
+    pub(super) fn lower(&self, reader: &mut Reader<'_>, units: &Units, around: &mut Around) -> DrawProgram {
         let profile = reader.profile;
         let signed = units.bound.map(|unit| unit.is_some_and(|unit| unit.signed != [false; 4]));
         let mut shader = units.shader;
@@ -88,7 +87,7 @@ impl ApiProgram {
             }
         };
         match lowered {
-            Ok((combiners, origins)) => Lowered { combiners, origins, shader },
+            Ok((combiners, origins)) => DrawProgram { combiners, origins, shader },
             Err(findings) => {
                 // Several draws may share a program: each finding is recorded once.
                 for finding in findings {
@@ -96,7 +95,7 @@ impl ApiProgram {
                         reader.push(finding);
                     }
                 }
-                Lowered { combiners: Combiners::default(), origins: Vec::new(), shader }
+                DrawProgram { combiners: Combiners::default(), origins: Vec::new(), shader }
             }
         }
     }

@@ -2,14 +2,14 @@
 
 use std::collections::HashMap;
 
-use super::api_program::{Around, Lowered};
+use super::api_program::{Around, DrawProgram};
 use super::geometry::{geometry, vertex_side};
 use super::program::Program;
 use super::*;
 use crate::mesh::Mesh;
 
 /// A lowered draw, with what the rest of the lowering needs of it.
-pub(super) struct Drawn {
+pub(super) struct LoweredDraw {
     pub(super) draw: Draw,
     pub(super) spans: DrawSpans,
     /// The mesh that its vertices are taken from. It is kept only if the scene has a truth.
@@ -23,7 +23,7 @@ pub(super) fn draws<'a>(
     reader: &mut Reader<'a>,
     raw: &Option<Raw<'a, source::List<'a, source::Draw<'a>>>>,
     keeps_meshes: bool,
-) -> Vec<Drawn> {
+) -> Vec<LoweredDraw> {
     let list = raw.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default();
     if let Some(raw) = raw
         && list.len() > reader.limits.draws
@@ -32,7 +32,7 @@ pub(super) fn draws<'a>(
         reader.push(found.help("put several triangles into one draw; `ninebit limits` prints what is allowed"));
         return Vec::new();
     }
-    let mut draws: Vec<Drawn> = Vec::with_capacity(list.len());
+    let mut draws: Vec<LoweredDraw> = Vec::with_capacity(list.len());
     let mut seen: HashMap<String, Span> = HashMap::new();
     let mut written: Vec<bool> = reader.targets.list.iter().map(|target| target.contents.is_some()).collect();
     let mut budget = Budget { vertices: reader.limits.vertices, indices: reader.limits.indices, spent: false };
@@ -77,7 +77,7 @@ fn draw<'a>(
     (name, place): (String, Span),
     budget: &mut Budget,
     written: &[bool],
-) -> Option<Drawn> {
+) -> Option<LoweredDraw> {
     let target = fields.target.as_ref().map_or(Some(0), |raw| target::find(reader, raw));
     if let Some(raw) = &fields.clear {
         return clear(reader, (fields, raw), (name, place), target?);
@@ -104,7 +104,7 @@ fn draw<'a>(
     }
     let (lowered, reads) = match program.as_deref() {
         Some(program) => program.lower(reader, &units, &mut around),
-        None => (Lowered::as_written(Combiners::default(), &units), Default::default()),
+        None => (DrawProgram::as_written(Combiners::default(), &units), Default::default()),
     };
     if let Some(made) = &mut geometry
         && !vertex_side(reader, made, &around.sets, &fog, viewer, &place)
@@ -163,7 +163,7 @@ fn draw<'a>(
     target?;
     budget.take(reader, &draw, &place)?;
     let spans = DrawSpans { draw: place, vertices: geometry.spans, units: units.places };
-    Some(Drawn { draw, spans, mesh: geometry.mesh, truth })
+    Some(LoweredDraw { draw, spans, mesh: geometry.mesh, truth })
 }
 
 /// Reads a clear among the draws.
@@ -172,7 +172,7 @@ fn clear<'a>(
     (fields, raw): (&source::Draw<'a>, &Raw<'a, source::ClearDraw<'a>>),
     (name, place): (String, Span),
     target: usize,
-) -> Option<Drawn> {
+) -> Option<LoweredDraw> {
     if let Some((name, text)) = fields.written().find(|(name, _)| !["name", "target", "clear"].contains(name)) {
         let message = format!("a clear has no `{name}`");
         let help =
@@ -182,7 +182,7 @@ fn clear<'a>(
     }
     let draw = raster::clear(reader, raw, target)?.draw(name, target);
     let spans = DrawSpans { draw: place.clone(), vertices: VertexSpans::All(place), ..DrawSpans::default() };
-    Some(Drawn { draw, spans, mesh: None, truth: None })
+    Some(LoweredDraw { draw, spans, mesh: None, truth: None })
 }
 
 /// Reads the state of lines.
@@ -236,7 +236,6 @@ fn edge_flags<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, Vec<u32>>>, coun
     Some(flags.into())
 }
 
-/// Reads the scissor of a draw.
 fn scissor<'a>(reader: &mut Reader<'a>, target: Option<usize>, fields: &source::Draw<'a>) -> Option<Rectangle> {
     let (raw, target) = (fields.scissor.as_ref()?, reader.targets.list.get(target?)?.clone());
     raster::clip(reader, &target, "scissor", raw)

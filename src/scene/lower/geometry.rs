@@ -26,24 +26,24 @@ pub(super) struct Geometry {
 }
 
 /// The vertices that a source starts from.
-pub(super) enum Given {
+pub(super) enum VertexOrigin {
     /// The vertices of a mesh, and the place of the mesh in the text.
     Mesh(Arc<Mesh>, Span),
     /// Vertices that are listed in the scene.
     Listed(Rc<VertexData>),
 }
 
-impl Given {
+impl VertexOrigin {
     /// Reads whichever of the two is given. Returns `None` if that fails, with the reason recorded.
     pub(super) fn read<'a>(
         reader: &mut Reader<'a>,
         vertices: &Option<Raw<'a, source::VertexList>>,
         mesh: &Option<Raw<'a, source::MeshSource>>,
         opening: Span,
-    ) -> Option<Given> {
+    ) -> Option<VertexOrigin> {
         let (code, message) = match (vertices, mesh) {
-            (Some(raw), None) => return reader.value(raw).map(Given::Listed),
-            (None, Some(raw)) => return reader.value(raw).map(|mesh| Given::Mesh(mesh, reader.span(raw))),
+            (Some(raw), None) => return reader.value(raw).map(VertexOrigin::Listed),
+            (None, Some(raw)) => return reader.value(raw).map(|mesh| VertexOrigin::Mesh(mesh, reader.span(raw))),
             (Some(_), Some(_)) => ("NB0222", "either `vertices` or `mesh`, not both"),
             (None, None) => ("NB0202", "this vertex source has neither `vertices` nor `mesh`"),
         };
@@ -52,22 +52,22 @@ impl Given {
     }
 
     pub(super) fn mesh(&self) -> Option<&Arc<Mesh>> {
-        if let Given::Mesh(mesh, _) = self { Some(mesh) } else { None }
+        if let VertexOrigin::Mesh(mesh, _) = self { Some(mesh) } else { None }
     }
 
     /// Returns the number of vertices.
     pub(super) fn count(&self) -> usize {
         match self {
-            Given::Mesh(mesh, _) => mesh.positions.len(),
-            Given::Listed(data) => data.vertices.len(),
+            VertexOrigin::Mesh(mesh, _) => mesh.positions.len(),
+            VertexOrigin::Listed(data) => data.vertices.len(),
         }
     }
 
     /// Returns the places of the vertices in the text.
     pub(super) fn spans(&self) -> VertexSpans {
         match self {
-            Given::Mesh(_, place) => VertexSpans::All(place.clone()),
-            Given::Listed(data) => data.spans.clone(),
+            VertexOrigin::Mesh(_, place) => VertexSpans::All(place.clone()),
+            VertexOrigin::Listed(data) => data.spans.clone(),
         }
     }
 }
@@ -284,16 +284,16 @@ fn matrix_geometry<'a>(reader: &mut Reader<'a>, target: usize, text: &'a str) ->
     if !fields.faults.is_empty() && fields.vertices.is_none() && fields.mesh.is_none() {
         return None;
     }
-    let given = Given::read(reader, &fields.vertices, &fields.mesh, opening.clone());
+    let given = VertexOrigin::read(reader, &fields.vertices, &fields.mesh, opening.clone());
     let of_mesh = fields.mesh.is_some() && fields.vertices.is_none();
     let outputs = of_mesh.then(|| outputs(reader, &fields));
     let given = given?;
     let (mut vertices, objects) = match (&given, outputs) {
-        (Given::Mesh(mesh, _), Some(outputs)) => {
+        (VertexOrigin::Mesh(mesh, _), Some(outputs)) => {
             (attribute::vertices(mesh, &outputs), Objects::Mesh(Arc::clone(mesh), outputs.dimensions()))
         }
-        (Given::Listed(data), _) => (data.vertices.clone(), Objects::Listed(Rc::clone(data))),
-        (Given::Mesh(..), None) => return None,
+        (VertexOrigin::Listed(data), _) => (data.vertices.clone(), Objects::Listed(Rc::clone(data))),
+        (VertexOrigin::Mesh(..), None) => return None,
     };
     let (matrix, model_view) = (matrix?, model_view?);
     vertices.map_positions(|position| ninebit::vertex::transform(&matrix, position));

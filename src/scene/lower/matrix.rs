@@ -90,7 +90,6 @@ fn product<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Tuple<'a, source::Matrix>>
     Some(result)
 }
 
-/// Reads the transpose of one matrix.
 fn transpose<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Tuple<'a, source::Matrix>>) -> Option<Rows> {
     let [part] = reader.read(raw)?.0[..] else {
         let help = "write `Transpose(\"world\")`";

@@ -91,7 +91,7 @@ impl DrawSpans {
 }
 
 /// A whole scene that has been lowered.
-pub(super) struct Found {
+pub(super) struct LoweredScene {
     pub(super) scene: Scene,
     pub(super) plan: Plan,
     pub(super) truth: Option<Truth>,
@@ -106,7 +106,7 @@ pub(super) fn shared_text<'a>(reader: &mut Reader<'a>, named: &Raw<'a, String>) 
 
 /// Reads and checks a whole scene. `family` is the text of its family's file, if it names one. Returns `None` if there are errors; the reader
 /// has them.
-pub(super) fn scene<'a>(reader: &mut Reader<'a>, text: &'a str, family: Option<&'a str>) -> Option<Found> {
+pub(super) fn scene<'a>(reader: &mut Reader<'a>, text: &'a str, family: Option<&'a str>) -> Option<LoweredScene> {
     if trim(text).is_empty() {
         return reader.refuse(
             Diagnostic::error("NB0101", 0..0, "the scene is empty")
@@ -153,7 +153,7 @@ pub(super) fn scene<'a>(reader: &mut Reader<'a>, text: &'a str, family: Option<&
     let plan = plan(reader, &scene, &spans)?;
     warn_unseen(reader, &plan, &spans);
     warn_unread(reader, &scene, &spans);
-    Some(Found { scene, plan, truth, spans })
+    Some(LoweredScene { scene, plan, truth, spans })
 }
 
 /// Warns of draws that store nothing.

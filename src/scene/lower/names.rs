@@ -7,7 +7,7 @@ use super::program::Program;
 use super::vertex::VertexData;
 use super::*;
 use crate::mesh::Mesh;
-use crate::names::{Index, Known, State, Table};
+use crate::names::{Definition, Index, State, Table};
 use crate::reader::{Entry, Valued};
 use ninebit::vertex::Rows;
 
@@ -38,7 +38,7 @@ impl Index {
     }
 
     pub(super) fn warn_unused(&self, reader: &mut Reader<'_>) {
-        for Known { name, place, .. } in self.list.iter().filter(|known| !known.used) {
+        for Definition { name, place, .. } in self.list.iter().filter(|known| !known.used) {
             let message = format!("the {} \"{}\" is not used", self.what, shorten(name));
             let help = "remove it, or check the spelling where it was meant to be used";
             reader.push(warning("NB0901", place.clone(), message, "nothing refers to it", help));

@@ -52,9 +52,3 @@ fn words<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::List<'a, String>>) -
     reader.accept(target::needs_nv2a(reader.profile, words.len() < 256, "NB0332", place, &what, "TEX-1"))?;
     Some(words)
 }
-
-/// Makes the finding that a texture's format reads no palette.
-pub(super) fn not_read(place: Span, format: TextureFormat) -> Diagnostic {
-    let message = format!("a texture of format {} reads no palette", format.name());
-    finding("NB0234", place, message, "never read", "leave `palette` out, or write `format: P8`").rule("TEX-1")
-}

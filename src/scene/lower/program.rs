@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::api_program::{ApiProgram, Around, Lowered};
+use super::api_program::{ApiProgram, Around, DrawProgram};
 use super::program_text::{ProgramText, placed};
 use super::unit::Units;
 use super::*;
@@ -103,7 +103,6 @@ pub(super) fn in_file(reader: &mut Reader<'_>, path: &Path, language: ProgramLan
     (reader.errors == errors).then_some(Program { form, asides })
 }
 
-/// Reads a program from its text.
 fn written(reader: &mut Reader<'_>, language: ProgramLanguage, text: ProgramText, asides: &mut Asides) -> Option<Form> {
     Some(match language {
         ProgramLanguage::Combiners => {
@@ -145,9 +144,11 @@ impl Program {
         reader: &mut Reader<'_>,
         units: &Units,
         around: &mut Around,
-    ) -> (Lowered, [Option<Span>; 4]) {
+    ) -> (DrawProgram, [Option<Span>; 4]) {
         match &self.form {
-            Form::Combiners(program) => (Lowered::as_written(program.combiners.clone(), units), program.reads.clone()),
+            Form::Combiners(program) => {
+                (DrawProgram::as_written(program.combiners.clone(), units), program.reads.clone())
+            }
             Form::Api(program) => (program.lower(reader, units, around), Default::default()),
         }
     }

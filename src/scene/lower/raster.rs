@@ -9,7 +9,6 @@ use ninebit::rop::surface;
 /// Largest number of columns or rows of a rectangle.
 const MAX_CLIP_COORDINATE: u32 = 65535;
 
-/// Reads a blend function.
 pub(super) fn blend_function<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::BlendSource>) -> Option<Blend> {
     let fields = reader.read(&raw.as_other::<source::Blend<'a>>())?;
     let equation = fields.equation(reader);
@@ -24,27 +23,20 @@ pub(super) fn operations<'a>(reader: &mut Reader<'a>, fields: &source::Draw<'a>,
     draw.alpha_test = fields.alpha_test.as_ref().and_then(|raw| alpha_test(reader, raw));
     if let Some(raw) = &fields.depth_test {
         draw.depth_test = depth_test(reader, raw);
-        let steps = draw.depth_test.is_some_and(|test| test.vertex_depths == VertexDepths::Steps);
-        if steps && !matches!(draw.positions, Positions::Window) {
-            let message = "vertex depths are steps of the buffer, and positions are projected";
-            let help = "give the vertices as `Window([...])`, or leave `vertex_depths` out";
-            reader.push(finding("NB0206", reader.span(raw), message, "`vertex_depths: Steps`", help).rule("DEP-1"));
+        let place = Some(reader.span(raw));
+        let checked = |test: &DepthTest| legality::draw::vertex_depths(test, &draw.positions, place.clone());
+        if let Some(finding) = draw.depth_test.as_ref().and_then(checked) {
+            reader.push(finding);
             draw.depth_test = None;
         }
-        if target.depth.is_none() {
-            let message = format!("target \"{}\" has no depth buffer", target.name);
-            let help = "add `depth: Z24S8` (or `Z16`) to the target";
-            let found = finding("NB0216", reader.span(raw), message, "tests depth", help).rule("DEP-2");
-            reader.push(reader.targets.beside(draw.target, found));
+        if let Some(finding) = legality::draw::depth_test(&target, place) {
+            reader.push(reader.targets.beside(draw.target, finding));
         }
     }
     if let Some(raw) = &fields.stencil_test {
         draw.stencil_test = reader.read(raw).map(|fields| stencil_test(reader, &fields));
-        if !target.depth.is_some_and(|depth| depth.format.has_stencil()) {
-            let message = format!("target \"{}\" has no stencil", target.name);
-            let help = "give the target `depth: Z24S8`";
-            let found = finding("NB0216", reader.span(raw), message, "tests the stencil", help).rule("STN-1");
-            reader.push(reader.targets.beside(draw.target, found));
+        if let Some(finding) = legality::draw::stencil_test(&target, Some(reader.span(raw))) {
+            reader.push(reader.targets.beside(draw.target, finding));
         }
     }
     draw.window_clip = fields.window_clip.as_ref().and_then(|raw| window_clip(reader, raw));
@@ -116,12 +108,7 @@ fn window_clip<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::WindowClip<'a>
     let fields = reader.read(raw)?;
     let list = fields.rectangles(reader)?;
     let rectangles = reader.read(&list)?;
-    if !(1..=WINDOW_CLIP_RECTANGLES).contains(&rectangles.len()) {
-        let message = format!("a window clip has 1 to {WINDOW_CLIP_RECTANGLES} rectangles, not {}", rectangles.len());
-        let help = "leave `window_clip` out to draw everywhere, or draw in several draws";
-        let label = format!("{} here", rectangles.len());
-        return reader.refuse(finding("NB0211", reader.span(&list), message, label, help).rule("CLP-1"));
-    }
+    reader.accept(legality::draw::window_clip(rectangles.len(), Some(reader.span(&list))))?;
     let rectangles = rectangles.iter().map(|raw| rectangle(reader, raw, ("window clip's rectangle", 1)));
     let rectangles = rectangles.collect::<Vec<_>>().into_iter().collect::<Option<Vec<_>>>()?;
     Some(WindowClip { rectangles, exclusive: fields.exclusive(reader) })

@@ -54,18 +54,18 @@ fn decoded(reader: &mut Reader<'_>, words: Written, inside: Option<&ProgramText>
 }
 
 /// Reads words in a text of their own, for the scene's chip.
-fn listed(reader: &mut Reader<'_>, text: &ProgramText) -> Option<Given> {
+fn listed(reader: &mut Reader<'_>, text: &ProgramText) -> Option<WordReader> {
     let written = text.parsed(reader, read(&text.text, reader.profile))?;
-    Some(Given { written, wrong: false })
+    Some(WordReader { written, wrong: false })
 }
 
 /// Words, and whether one of them could not be read.
-struct Given {
+struct WordReader {
     written: Written,
     wrong: bool,
 }
 
-impl Given {
+impl WordReader {
     fn set(&mut self, reader: &mut Reader<'_>, word: Word, index: usize, raw: &Raw<'_, u32>, value: Option<u32>) {
         self.wrong |= value.is_none();
         self.written.set(word, index, value.unwrap_or(0), reader.range(raw.text));
@@ -95,8 +95,8 @@ fn words<'a>(
     chip: Profile,
     fields: impl Iterator<Item = (&'static str, &'a str)>,
     opening: Span,
-) -> Given {
-    let mut given = Given { written: Written::new(chip, opening), wrong: false };
+) -> WordReader {
+    let mut given = WordReader { written: Written::new(chip, opening), wrong: false };
     for (name, text) in fields {
         let word = Word::ALL.iter().copied().find(|word| word.name() == name);
         match word.map(|word| (word, word.count(chip))) {

@@ -2,6 +2,7 @@
 
 use super::unit::Units;
 use super::*;
+use ninebit::legality;
 
 /// Names of the operations; the last three are recognised and refused.
 const OPERATIONS: &[&str] = &[
@@ -155,21 +156,16 @@ pub(super) fn bump_numbers<'a>(
 /// Checks the earlier unit that a stage reads: unit 0 for stage 1, unit 0 or 1 for stage 2, any of the three for stage 3.
 fn previous(reader: &mut Reader<'_>, shader: &mut [ShaderStage; TEXTURE_UNITS], index: usize, places: &Places) {
     let ShaderStage { operation, previous, .. } = shader[index];
-    let mut refuse = |place: &Span, message: String, label: &str, help: String| {
-        reader.push(finding("NB0342", place.clone(), message, label, help).rule("TSH-10"));
+    let refuse = |reader: &mut Reader<'_>, place: &Span, message: String, help: &str| {
+        reader.push(finding("NB0342", place.clone(), message, "has no meaning", help).rule("TSH-10"));
     };
     if let Some(place) = &places.previous {
         if !operation.reads_previous() {
             let message = format!("{} reads no earlier unit", operation.name());
-            refuse(place, message, "has no meaning", "leave `previous` out".to_owned());
+            refuse(reader, place, message, "leave `previous` out");
             shader[index].previous = index.saturating_sub(1);
         } else if previous >= index {
-            let message = format!("stage {index} cannot read unit {previous}");
-            let help = match index {
-                0 | 1 => "stage 1 always reads unit 0: leave `previous` out".to_owned(),
-                _ => format!("it reads what is fetched before it: unit 0 to {}", index - 1),
-            };
-            refuse(place, message, "not fetched yet", help);
+            reader.push(legality::shader::later_unit(index, previous, Some(place.clone())));
             shader[index].previous = index.saturating_sub(1);
         }
     }
@@ -177,25 +173,14 @@ fn previous(reader: &mut Reader<'_>, shader: &mut [ShaderStage; TEXTURE_UNITS], 
         && !operation.is_dot()
     {
         let message = format!("{} maps no colour to a vector", operation.name());
-        refuse(place, message, "has no meaning", "leave `mapping` out; the dot products have it".to_owned());
+        refuse(reader, place, message, "leave `mapping` out; the dot products have it");
     }
 }
 
 /// Checks by TSH-10 which operation follows which. Returns whether the operation may stand at this stage.
 fn order(reader: &mut Reader<'_>, shader: &[ShaderStage; TEXTURE_UNITS], index: usize, places: &Places) -> bool {
-    let operation = shader[index].operation;
-    let wanted = ShaderStage::misplaced(shader, index);
-    if let Some(help) = wanted {
-        let message = format!("{} cannot stand at stage {index} here", operation.name());
-        reader.push(finding("NB0341", places.stage.clone(), message, "the chip refuses it", help).rule("TSH-10"));
-    } else if ShaderStage::reads_too_late(shader, index) {
-        let message = "with DotReflectDiffuse before it, stage 3 cannot read unit 2";
-        let place = places.previous.clone().unwrap_or_else(|| places.stage.clone());
-        let label = "its dot product is part of what unit 2 samples with";
-        let help = "write `(operation: ..., previous: 0)` or `previous: 1`";
-        reader.push(finding("NB0342", place, message, label, help).rule("TSH-10"));
-    }
-    wanted.is_none()
+    reader.accept(legality::shader::order(shader, index, Some(places.stage.clone()), places.previous.clone()));
+    ShaderStage::misplaced(shader, index).is_none()
 }
 
 /// Checks that the texture that a stage samples exists and is of a kind that fits.
@@ -204,22 +189,14 @@ fn texture(reader: &mut Reader<'_>, units: &Units, index: usize, places: &Places
     if !operation.samples() {
         return;
     }
-    let name = operation.name();
-    let fits = operation.kinds();
     let Some(unit) = units.bound[index] else {
         if units.places[index].is_empty() {
-            let message = format!("stage {index} samples, but its unit has no texture");
-            let help = format!("give the draw `textures: [...]` with an entry for unit {index}");
-            reader.push(finding("NB0343", places.stage.clone(), message, "nothing to sample", help).rule("TSH-10"));
+            reader.push(legality::shader::unbound(index, Some(places.stage.clone())));
         }
         return;
     };
     let Some(texture) = reader.textures.list.get(unit.texture) else { return };
-    if !fits.contains(&texture.kind) {
-        let kinds: Vec<&str> = fits.iter().map(|kind| kind.name()).collect();
-        let message = format!("{name} does not sample a texture of kind {}", texture.kind.name());
-        let help = "give the unit another texture, or take the operation for this kind";
-        let found = finding("NB0343", places.stage.clone(), message, format!("needs {}", kinds.join(" or ")), help);
-        reader.push(found.related(units.places[index].clone(), "the texture of its unit").rule("TSH-10"));
+    if let Some(finding) = legality::shader::kind(&operation, texture.kind, Some(places.stage.clone())) {
+        reader.push(finding.related(units.places[index].clone(), "the texture of its unit"));
     }
 }

@@ -2,7 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "DEP-2: the depth that a clear stores is given as a float")]
 
 use super::*;
-use crate::names::{Buffer, Index, Targets};
+use crate::names::{Index, Targets};
 pub(super) use ninebit::diagnostic::needs_nv2a;
 use ninebit::legality;
 use ninebit::number::convert;

@@ -1,10 +1,11 @@
 //! Lowers textures: their kind and format, and how they are made of faces and levels.
 
-use super::texture_levels::Wanted;
-use super::texture_source::{Given, Request, Variant, only};
+use super::texture_levels::LevelCount;
+use super::texture_source::{Request, SourceTexels, Variant, only};
 use super::*;
 use crate::names::{Index, Textures};
 use crate::reader::Entry;
+use ninebit::legality;
 use ninebit::rop::surface;
 
 impl Textures {
@@ -52,7 +53,7 @@ fn texture<'a>(reader: &mut Reader<'a>, entry: &Entry<'a, source::Texture<'a>>) 
     let format = reader.perhaps(&fields.format, |reader, raw| Some((format(reader, raw)?, reader.span(raw))))?;
     let palette = fields.palette.as_ref().and_then(|raw| palette::find(reader, raw));
     let border = fields.border(reader);
-    let levels = fields.levels.as_ref().map_or(Some(Wanted::Own), |raw| texture_levels::wanted(reader, raw))?;
+    let levels = fields.levels.as_ref().map_or(Some(LevelCount::Own), |raw| texture_levels::requested(reader, raw))?;
     let source = fields.source(reader)?;
     let (variant, rest) = reader.variant(&source, "texture source", Variant::ALL_NAMES)?;
     let (texture, palette) = if matches!(Variant::ALL[variant], Variant::Target | Variant::Depth) {
@@ -67,7 +68,7 @@ fn texture<'a>(reader: &mut Reader<'a>, entry: &Entry<'a, source::Texture<'a>>) 
             border,
         };
         let mut given = texture_source::read(reader, Variant::ALL[variant], &source, rest, &request)?;
-        if fields.mips.is_some() && levels != Wanted::Own {
+        if fields.mips.is_some() && levels != LevelCount::Own {
             let place = reader.place(&fields.levels);
             let help = "keep `levels`, or `mips`, whose sources are levels 1, 2 and so on";
             let message = "levels are counted and listed at once";
@@ -89,7 +90,7 @@ fn texture<'a>(reader: &mut Reader<'a>, entry: &Entry<'a, source::Texture<'a>>) 
         reader.accept(checks.layers(kind, layers, Some(given.place.clone())))?;
         match &fields.mips {
             Some(raw) => texture_levels::listed(reader, &mut given, raw, kind, &request)?,
-            None => texture_levels::counted(reader, &mut given, levels, &request)?,
+            None => texture_levels::resize_chain(reader, &mut given, levels, &request)?,
         }
         let levels = given.levels();
         reader.accept(checks.levels(kind, levels, Some(given.place.clone())))?;
@@ -106,7 +107,7 @@ fn texture<'a>(reader: &mut Reader<'a>, entry: &Entry<'a, source::Texture<'a>>) 
     };
     match &fields.palette {
         Some(raw) if texture.format != TextureFormat::P8 => {
-            reader.refuse(palette::not_read(reader.span(raw), texture.format))
+            reader.refuse(legality::texture::unread_palette(texture.format, Some(reader.span(raw))))
         }
         // What is wrong with the palette itself has been recorded.
         Some(_) if palette.is_none() => None,
@@ -142,7 +143,7 @@ const DEPTH_FORMATS: [(&str, &[&str]); 5] = [
 ];
 
 /// Determines the kind of a texture: the one that is written, or the one that its source suggests; the two have to agree.
-fn settled_kind(reader: &mut Reader<'_>, written: Option<TextureKind>, given: &Given) -> Option<TextureKind> {
+fn settled_kind(reader: &mut Reader<'_>, written: Option<TextureKind>, given: &SourceTexels) -> Option<TextureKind> {
     use TextureKind::{Cube, ThreeDimensional, TwoDimensional};
     let own = match given.volume {
         true => ThreeDimensional,
@@ -169,7 +170,7 @@ fn settled_kind(reader: &mut Reader<'_>, written: Option<TextureKind>, given: &G
 }
 
 /// Returns the sides of level 0 without border texels.
-fn interior(reader: &mut Reader<'_>, given: &Given, border: bool) -> Option<(u32, u32)> {
+fn interior(reader: &mut Reader<'_>, given: &SourceTexels, border: bool) -> Option<(u32, u32)> {
     let beyond = texture_levels::beyond(border);
     let (width, height) = (given.width, given.height);
     if width <= beyond || height <= beyond {

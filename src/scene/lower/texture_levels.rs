@@ -1,12 +1,12 @@
 //! Lowers the levels of a texture: those of its file, listed ones, or those made from level 0.
 
-use super::texture_source::{Given, Request, Variant};
+use super::texture_source::{Request, SourceTexels, Variant};
 use super::*;
 use ninebit_files::texels;
 
 /// The number of levels that a texture asks for.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Wanted {
+pub(super) enum LevelCount {
     /// `levels` is not written: as many as the source has.
     Own,
     /// The number that is written.
@@ -21,13 +21,13 @@ pub(super) fn beyond(border: bool) -> u32 {
 }
 
 /// Reads `levels: 4` or `levels: All`.
-pub(super) fn wanted<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<Wanted> {
+pub(super) fn requested<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<LevelCount> {
     if raw.split() == ("All", "") {
-        return Some(Wanted::All);
+        return Some(LevelCount::All);
     }
     let number: Raw<'a, u32> = raw.as_other();
     if number.split().0.is_empty() {
-        return reader.within(&number, "the number of levels", 1..=13, |finding| finding).map(Wanted::Number);
+        return reader.within(&number, "the number of levels", 1..=13, |finding| finding).map(LevelCount::Number);
     }
     let message = "expected a number of levels, or `All`";
     let help = "write `levels: All` for levels down to 1 x 1";
@@ -35,13 +35,18 @@ pub(super) fn wanted<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -
 }
 
 /// Returns how many levels to take from a source that does not determine their number.
-pub(super) fn number(reader: &mut Reader<'_>, wanted: Wanted, [width, height]: [u32; 2], place: Span) -> Option<u32> {
+pub(super) fn number(
+    reader: &mut Reader<'_>,
+    requested: LevelCount,
+    [width, height]: [u32; 2],
+    place: Span,
+) -> Option<u32> {
     let most = Level::most(width, height);
-    match wanted {
-        Wanted::Own => Some(1),
-        Wanted::All => Some(most),
-        Wanted::Number(number) if number <= most => Some(number),
-        Wanted::Number(number) => reader.refuse(too_many(number, width, height, place)),
+    match requested {
+        LevelCount::Own => Some(1),
+        LevelCount::All => Some(most),
+        LevelCount::Number(number) if number <= most => Some(number),
+        LevelCount::Number(number) => reader.refuse(too_many(number, width, height, place)),
     }
 }
 
@@ -54,14 +59,19 @@ fn too_many(number: u32, width: u32, height: u32, place: Span) -> Diagnostic {
 }
 
 /// Brings the levels of a source to the number asked for, by dropping some or making smaller ones from level 0.
-pub(super) fn counted<'a>(reader: &mut Reader<'a>, given: &mut Given, wanted: Wanted, request: &Request) -> Option<()> {
+pub(super) fn resize_chain<'a>(
+    reader: &mut Reader<'a>,
+    given: &mut SourceTexels,
+    requested: LevelCount,
+    request: &Request,
+) -> Option<()> {
     let own = given.levels();
     let beyond = beyond(request.border);
     let inside = [given.width - beyond, given.height - beyond];
-    if wanted == Wanted::Own {
+    if requested == LevelCount::Own {
         return Some(());
     }
-    let number = number(reader, wanted, inside, given.place.clone())?;
+    let number = number(reader, requested, inside, given.place.clone())?;
     if number <= own {
         for levels in &mut given.faces {
             levels.truncate(number as usize);
@@ -97,7 +107,7 @@ pub(super) fn counted<'a>(reader: &mut Reader<'a>, given: &mut Given, wanted: Wa
 /// Adds the levels that `mips` lists.
 pub(super) fn listed<'a>(
     reader: &mut Reader<'a>,
-    given: &mut Given,
+    given: &mut SourceTexels,
     raw: &Raw<'a, source::List<'a, source::ImageSource>>,
     kind: TextureKind,
     request: &Request,
@@ -115,7 +125,7 @@ pub(super) fn listed<'a>(
         return reader.refuse(too_many(number, inside[0], inside[1], reader.span(raw)));
     }
     // Listed sources have the format of level 0, however that was determined.
-    let request = Request { format: Some(given.format), levels: Wanted::Own, ..*request };
+    let request = Request { format: Some(given.format), levels: LevelCount::Own, ..*request };
     let mut complete = true;
     for (n, raw) in (1..).zip(&list) {
         let Some(level) = texture_source::nested(reader, raw, "source of a level", &Variant::OF_LEVEL, &request) else {
@@ -146,7 +156,7 @@ pub(super) fn listed<'a>(
 }
 
 /// Drops the levels before `first_level`, which has to be a level that exists. Returns its number.
-pub(super) fn first<'a>(reader: &mut Reader<'a>, given: &mut Given, raw: &Raw<'a, u32>) -> Option<u32> {
+pub(super) fn first<'a>(reader: &mut Reader<'a>, given: &mut SourceTexels, raw: &Raw<'a, u32>) -> Option<u32> {
     let number = reader.read(raw)?;
     let levels = given.levels();
     if number >= levels {

@@ -1,6 +1,6 @@
 //! Reads the sources of texels: files, raw memory, lists of words, generated pictures.
 
-use super::texture_levels::{self, Wanted};
+use super::texture_levels::{self, LevelCount};
 use super::*;
 use ninebit::legality::texture::no_texels;
 use ninebit_files::texels;
@@ -11,7 +11,7 @@ mod stored;
 pub(super) use stored::read_file;
 
 /// Texels that a source gives.
-pub(super) struct Given {
+pub(super) struct SourceTexels {
     pub(super) format: TextureFormat,
     /// Columns of level 0, border texels included.
     pub(super) width: u32,
@@ -27,7 +27,7 @@ pub(super) struct Given {
     pub(super) place: Span,
 }
 
-impl Given {
+impl SourceTexels {
     /// Returns the number of levels of each face.
     pub(super) fn levels(&self) -> u32 {
         self.faces.first().map_or(1, |levels| levels.len() as u32)
@@ -44,7 +44,7 @@ pub(super) struct Request {
     /// Whether a raw file holds the layers of a volume.
     pub(super) volume: bool,
     /// Number of levels in a raw file.
-    pub(super) levels: Wanted,
+    pub(super) levels: LevelCount,
     /// Whether sources have border texels.
     pub(super) border: bool,
 }
@@ -92,7 +92,7 @@ pub(super) fn read<'a>(
     raw: &Raw<'a, source::ImageSource>,
     text: &'a str,
     request: &Request,
-) -> Option<Given> {
+) -> Option<SourceTexels> {
     let place = reader.span(raw);
     match variant {
         Variant::File => stored::file(reader, text, request, place),
@@ -117,7 +117,7 @@ pub(super) fn nested<'a>(
     what: &str,
     variants: &[Variant],
     request: &Request,
-) -> Option<Given> {
+) -> Option<SourceTexels> {
     let names: Vec<&'static str> = variants.iter().map(|variant| variant.name()).collect();
     let (variant, rest) = reader.variant(raw, what, &names)?;
     read(reader, variants[variant], raw, rest, request)
@@ -136,10 +136,10 @@ pub(super) fn afford<'a>(reader: &mut Reader<'a>, place: Span, words: u64) -> Op
 }
 
 /// Reads six sources, one for each face.
-fn faces<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request, place: Span) -> Option<Given> {
+fn faces<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request, place: Span) -> Option<SourceTexels> {
     let fields = reader.read(&Raw::<source::Faces<'a>>::new(text))?;
     let request = Request { faces: 1, ..*request };
-    let mut six: Vec<Given> = Vec::new();
+    let mut six: Vec<SourceTexels> = Vec::new();
     let face = [
         source::Faces::positive_x,
         source::Faces::negative_x,
@@ -167,11 +167,11 @@ fn faces<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request, place: S
 }
 
 /// Reads a list of sources, one for each layer.
-fn layers<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request, place: Span) -> Option<Given> {
+fn layers<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request, place: Span) -> Option<SourceTexels> {
     let raw = only::<source::List<'a, source::ImageSource>>(reader, text, "a list of sources")?;
     let list = reader.read(&raw)?;
     let request = Request { volume: false, ..*request };
-    let mut all: Vec<Given> = Vec::new();
+    let mut all: Vec<SourceTexels> = Vec::new();
     for raw in &list {
         let layer = nested(reader, raw, "source of a layer", &Variant::OF_FACE, &request)?;
         if !all.first().is_none_or(|first| alike(reader, first, &layer, reader.span(raw), "layer")) {
@@ -190,7 +190,7 @@ fn layers<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request, place: 
 }
 
 /// Reads words in hexadecimal, one text for each row.
-fn words<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request) -> Option<Given> {
+fn words<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request) -> Option<SourceTexels> {
     let raw = Raw::<source::TexelRows<'a>>::new(text);
     let fields = reader.read(&raw)?;
     let format = request.format.unwrap_or(TextureFormat::A8R8G8B8);
@@ -271,13 +271,13 @@ pub(super) fn hexadecimal(word: &str, digits: usize) -> Option<u32> {
 }
 
 /// Wraps the words of a texture with one face and one level.
-fn one(format: TextureFormat, width: u32, height: u32, words: Vec<u32>, place: Span) -> Given {
-    Given { format, width, height, faces: vec![vec![words]], volume: false, palette: None, place }
+fn one(format: TextureFormat, width: u32, height: u32, words: Vec<u32>, place: Span) -> SourceTexels {
+    SourceTexels { format, width, height, faces: vec![vec![words]], volume: false, palette: None, place }
 }
 
 /// Returns whether a face or layer agrees with the first one, after recording a finding if not.
-fn alike(reader: &mut Reader<'_>, first: &Given, face: &Given, place: Span, what: &str) -> bool {
-    let describe = |given: &Given| {
+fn alike(reader: &mut Reader<'_>, first: &SourceTexels, face: &SourceTexels, place: Span, what: &str) -> bool {
+    let describe = |given: &SourceTexels| {
         let levels = if given.levels() == 1 { String::new() } else { format!(" in {} levels", given.levels()) };
         format!("{} x {} texels {}{levels}", given.width, given.height, given.format.name())
     };

@@ -2,7 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "describes a float64 reference; nothing of this is stored")]
 
 use super::attribute::Light as Place;
-use super::draw::Drawn;
+use super::draw::LoweredDraw;
 use super::texture_source::only;
 use super::*;
 use crate::generate::normal_map::{self, HeightChannel};
@@ -20,7 +20,7 @@ pub(super) fn truth<'a>(
     reader: &mut Reader<'a>,
     own: &Option<Raw<'a, source::Truth<'a>>>,
     shared: &Option<Raw<'a, source::Truth<'a>>>,
-    draws: &[Drawn],
+    draws: &[LoweredDraw],
 ) -> Option<Truth> {
     let Some(raw) = own.as_ref().or(shared.as_ref()) else {
         without_truth(reader, draws);
@@ -72,7 +72,7 @@ pub(super) fn truth<'a>(
 }
 
 /// Refuses draws with a `truth` field in a scene that has no truth.
-fn without_truth(reader: &mut Reader<'_>, draws: &[Drawn]) {
+fn without_truth(reader: &mut Reader<'_>, draws: &[LoweredDraw]) {
     for (_, place) in draws.iter().filter_map(|drawn| drawn.truth.clone()) {
         let message = "the scene has no truth that a draw could take part in";
         let help = "leave it out, or give the scene a `truth: (...)`";
@@ -81,7 +81,7 @@ fn without_truth(reader: &mut Reader<'_>, draws: &[Drawn]) {
 }
 
 /// Returns the mesh of a draw that takes part in the truth.
-fn mesh(reader: &mut Reader<'_>, drawn: &Drawn) -> Option<Arc<crate::mesh::Mesh>> {
+fn mesh(reader: &mut Reader<'_>, drawn: &LoweredDraw) -> Option<Arc<crate::mesh::Mesh>> {
     let wanted = drawn.truth.as_ref().is_none_or(|(wanted, _)| *wanted);
     if !wanted || drawn.draw.target != 0 {
         return None;
@@ -272,7 +272,7 @@ fn field<const N: usize>(image: &Rgba, of: impl Fn([u8; 4]) -> [f64; N]) -> Fiel
 fn shading_normal<'a>(
     reader: &mut Reader<'a>,
     raw: &Raw<'a, source::ShadingNormal<'a>>,
-    draws: &[Drawn],
+    draws: &[LoweredDraw],
 ) -> Option<ShadingNormal> {
     let fields = reader.read(raw)?;
     let space = fields.space(reader);
@@ -306,7 +306,7 @@ fn normal_register<'a>(reader: &mut Reader<'a>, written: &Raw<'a, Name<Register>
 }
 
 /// Checks that a unit has a dot product, which reads the normals, in some draw.
-fn normal_unit(reader: &mut Reader<'_>, place: Span, unit: usize, draws: &[Drawn]) -> Option<NormalHolder> {
+fn normal_unit(reader: &mut Reader<'_>, place: Span, unit: usize, draws: &[LoweredDraw]) -> Option<NormalHolder> {
     if draws.iter().any(|drawn| drawn.draw.texture_shader[unit].operation.is_dot()) {
         return Some(NormalHolder::DotProduct(unit));
     }

@@ -1,6 +1,7 @@
 //! Lowers the texture units of a draw.
 
 use super::*;
+use ninebit::legality;
 
 /// The texture units of a draw, with the stages of its texture shader.
 pub(super) struct Units {
@@ -106,11 +107,7 @@ fn color_key<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ColorKey<'a>>, u
     let fields = reader.read(raw)?;
     let color = fields.color(reader);
     let mode = fields.mode(reader);
-    if !unit.is_nearest() {
-        let message = "it is not known what a colour key does under a filter";
-        let help = "write `min_filter: Nearest, mag_filter: Nearest`, as programs with keyed textures did";
-        reader.push(finding("NB0402", reader.span(raw), message, "cannot be modelled", help).rule("KEY-1"));
-    }
+    reader.accept(legality::texture::filtered_key(unit, Some(reader.span(raw))));
     let color = color.and_then(|raw| color::constant(reader, &raw));
     Some(ColorKey { mode: reader.name(&mode?)?, color: color? })
 }

@@ -1,6 +1,7 @@
 //! Checks a texture unit against the texture that it samples.
 
 use super::*;
+use ninebit::legality;
 
 /// Sets the palette of a unit, and checks the unit against its texture. `fields` is `None` if only the texture's name is written, at
 /// `place`.
@@ -20,20 +21,13 @@ pub(super) fn check<'a>(
         };
         if unit.palette.is_none() && raw.is_none() {
             let name = shorten(&reader.textures.list[unit.texture].name);
-            let message = format!("the texture `{name}` is of format P8 and has no palette");
-            let help = "write `palette: \"...\"` in the texture or in this unit";
-            reader.push(finding("NB0234", place.clone(), message, "which colours?", help).rule("TEX-1"));
+            reader.push(legality::texture::missing_palette(&name, Some(place.clone())));
         }
     } else if let Some(raw) = raw {
-        reader.push(palette::not_read(reader.span(raw), format));
+        reader.push(legality::texture::unread_palette(format, Some(reader.span(raw))));
     }
+    let field = fields.and_then(|f| [&f.address_s, &f.address_t, &f.address].into_iter().flatten().next().copied());
+    let place = field.map_or(place, |raw| reader.span(&raw));
     let modes = [unit.address_s, unit.address_t];
-    if kind == TextureKind::Rectangle && reader.profile == Profile::Nv10 && modes != [AddressMode::ClampToEdge; 2] {
-        let wrong = modes.into_iter().find(|mode| *mode != AddressMode::ClampToEdge).map_or("", Named::name);
-        let field = fields.and_then(|f| [&f.address_s, &f.address_t, &f.address].into_iter().flatten().next().copied());
-        let place = field.map_or(place, |raw| reader.span(&raw));
-        let message = format!("a rectangle texture cannot be addressed with {wrong} on Nv10");
-        let help = "write `address: ClampToEdge`, or `profile: Nv2a`";
-        reader.push(finding("NB0330", place, message, "not as a rectangle", help).rule("TEX-7"));
-    }
+    reader.accept(reader.texture_checks().rectangle_modes(kind, modes, Some(place)));
 }

@@ -4,7 +4,7 @@
 mod constants;
 mod inputs;
 
-use super::geometry::{Geometry, Given, Objects, viewport, with_clip_depth};
+use super::geometry::{Geometry, Objects, VertexOrigin, viewport, with_clip_depth};
 use super::program_text::ProgramText;
 use super::vertex::VertexData;
 use super::*;
@@ -20,7 +20,7 @@ pub(super) fn geometry<'a>(reader: &mut Reader<'a>, target: usize, text: &'a str
     let fields = reader.read(&Raw::<source::ProgramVertices<'a>>::new(text))?;
     let viewport = viewport(reader, &fields.viewport, target);
     let viewport = with_clip_depth(viewport, fields.clip_depth(reader));
-    let given = Given::read(reader, &fields.vertices, &fields.mesh, opening.clone());
+    let given = VertexOrigin::read(reader, &fields.vertices, &fields.mesh, opening.clone());
     let program = program(reader, &fields, opening);
     let constants = constants::constants(reader, &fields.constants, program.as_ref());
     let (given, (written, text)) = (given?, program?);
@@ -83,7 +83,7 @@ fn run(
     shader: &VertexShader,
     constants: &Constants,
     sources: &[Input],
-    given: &Given,
+    given: &VertexOrigin,
 ) -> Option<(Vertices, Vec<f32>, Option<Vec<u16>>)> {
     let written = Registers::from_shader(shader);
     let mut fog_coordinates = Vec::with_capacity(given.count());

@@ -19,7 +19,7 @@ const MAX_FINDINGS: usize = 16;
 /// Statements that do not concern triangles.
 const WITHOUT_TRIANGLES: &[&str] = &["o", "g", "s", "usemtl", "mtllib", "l", "p", "vp"];
 
-type Found<T> = Result<T, Box<Diagnostic>>;
+type LineResult<T> = Result<T, Box<Diagnostic>>;
 
 /// Reads the vertices (`v`, `vt`, `vn`) and faces (`f`) of a file; a face of more than three corners becomes a triangle fan. The first row of
 /// a texture is at the top in this program and at the bottom in the file, so t becomes 1 - t.
@@ -78,7 +78,7 @@ impl<'t> File<'t> {
     }
 
     /// Refuses a file with too many faces or corners before anything is built from it.
-    fn count(self, limit: usize) -> Found<()> {
+    fn count(self, limit: usize) -> LineResult<()> {
         let mut indices = 0;
         for face in self.named("f") {
             indices += 3 * corners(face).saturating_sub(2).max(1);
@@ -89,7 +89,7 @@ impl<'t> File<'t> {
         Ok(())
     }
 
-    fn parse(self) -> Found<ObjData> {
+    fn parse(self) -> LineResult<ObjData> {
         let mut reduced = String::with_capacity(self.text.len() + 1);
         for statement in self.statements() {
             reduced.push_str(statement);
@@ -191,7 +191,7 @@ impl<'t> File<'t> {
 
     /// Checks that the file has what a corner refers to. The crate does not check indices against its lists, and ignores a fourth index as well as
     /// indices of texture coordinates and normals that it cannot read.
-    fn check(self, data: &ObjData, word: &str, corner: &IndexTuple) -> Found<()> {
+    fn check(self, data: &ObjData, word: &str, corner: &IndexTuple) -> LineResult<()> {
         let IndexTuple(position, coordinates, normal) = *corner;
         let read = 1 + usize::from(coordinates.is_some()) + usize::from(normal.is_some());
         if word.split('/').filter(|part| !part.is_empty()).count() != read {

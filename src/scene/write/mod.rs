@@ -108,12 +108,7 @@ fn write_targets(
             2 => TextureFormat::R5G6B5,
             _ => TextureFormat::A8R8G8B8,
         };
-        let depths = match target.depth.map(|depth| depth.format) {
-            Some(DepthFormat::Z16) | None => TextureFormat::Z16,
-            Some(DepthFormat::Z24S8) => TextureFormat::Z24S8,
-            Some(DepthFormat::Z16F) => TextureFormat::Z16F,
-            Some(DepthFormat::Z24S8F) => TextureFormat::Z24S8F,
-        };
+        let depths = target.depth.map_or(TextureFormat::Z16, |depth| depth.format.texture_format());
         let contents = [add(&target.contents, colors)?, add(&target.depth_contents, depths)?];
         Ok(Node::from(target::target(target, name, contents.each_ref().map(Option::as_deref))))
     };

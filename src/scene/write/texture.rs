@@ -157,7 +157,6 @@ fn of_target(texture: &Texture, target: &Target, shown: &str) -> Fields {
     fields
 }
 
-/// Returns the fields of a texture of texels.
 fn of_texels(name: &str, texture: &Texture, image: &Texels, files: &mut Files) -> Result<Fields, String> {
     let Texels { width, height, levels, layers, border, ref words } = *image;
     let Texture { kind, format, .. } = *texture;

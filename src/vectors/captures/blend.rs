@@ -233,7 +233,7 @@ pub(super) fn surfaces(frames: &mut Frames) {
 
 /// Draws a picture, blended and opaque, into zeroed memory of a surface format. The frame then reads that memory as 32 bits per pixel, whatever the
 /// format.
-fn surface_format(format: SurfaceFormat) -> Drawn {
+fn surface_format(format: SurfaceFormat) -> FrameDrawing {
     let blend = if surface::blends(format) && format != SurfaceFormat::R5G6B5 { OVER } else { None };
     let mut before = Canvas::new(0);
     let size = [128, 128];
@@ -256,7 +256,7 @@ fn surface_format(format: SurfaceFormat) -> Drawn {
     canvas.draw(half(0.0));
     canvas.draw(without_alpha(half(240.0), FinalRegister::Texture0));
     let before = vec![before.colors().scene];
-    Drawn { before, ..canvas.colors() }
+    FrameDrawing { before, ..canvas.colors() }
 }
 
 /// Adds the frames of Surface_format.
@@ -285,11 +285,11 @@ pub(super) fn alpha_function(frames: &mut Frames) {
                 top += 64.0;
             }
             canvas.draw(rectangle([0.0, top, 640.0, top + 32.0], VertexColor::Bytes(abgr(0x7fff_ffff))));
-            let Drawn { mut scene, .. } = canvas.colors();
+            let FrameDrawing { mut scene, .. } = canvas.colors();
             for draw in &mut scene.draws {
                 draw.alpha_test = enabled.then_some(AlphaTest { function, reference: 127 });
             }
-            frames.push(format!("AlphaFunc{name}_{state}"), Drawn::colors(scene));
+            frames.push(format!("AlphaFunc{name}_{state}"), FrameDrawing::colors(scene));
         }
     }
 }

@@ -34,7 +34,7 @@ const WORDS: [u32; 6] = [0x00da_caba, 0x011b_2b3b, 0x7f3c_2c1c, 0x804d_5d6d, 0xf
 const SIDE: u32 = 128;
 
 /// Returns a frame of surfaces that are cleared to a word and have a black square in the middle. Their memory is read as A8B8G8R8.
-fn words(format: SurfaceFormat) -> Drawn {
+fn words(format: SurfaceFormat) -> FrameDrawing {
     let bytes = format.bytes();
     let mut canvas = Canvas::new(0xff22_0022);
     let mut before = Vec::new();
@@ -50,7 +50,7 @@ fn words(format: SurfaceFormat) -> Drawn {
         let shown = pasted(sized(at, size), 0, nearest(texture), sized([0.0; 2], size));
         canvas.draw(Draw { blend: None, ..shown });
     }
-    Drawn { before, ..canvas.colors() }
+    FrameDrawing { before, ..canvas.colors() }
 }
 
 /// Returns the depth in the buffer's range of a point of the world at z.

@@ -52,13 +52,13 @@ pub(super) fn window_clip(frames: &mut Frames) {
         let window_clip = Some(WindowClip { rectangles, exclusive });
         let draws = vec![square(bytes(0x33, 0x77, 0x88)), Draw { window_clip, ..square(bytes(0xff, 0x77, 0x33)) }];
         let direct = scene(vec![frame_buffer(0xfe11_1213)], vec![], draws.clone());
-        frames.push(name.clone(), Drawn::colors(direct));
+        frames.push(name.clone(), FrameDrawing::colors(direct));
         let target = Target { name: "rt".into(), ..Target::new(256, 256, SurfaceFormat::A8R8G8B8) };
         let mut draws: Vec<Draw> = draws.into_iter().map(|draw| Draw { target: 1, ..draw }).collect();
         draws.push(show([0.0, 0.0, 256.0, 256.0], [192.0, 112.0, 448.0, 368.0]));
         let textures = vec![target_texture(TextureFormat::A8R8G8B8, 1)];
         let through = scene(vec![frame_buffer(0xfe33_2233), target], textures, draws);
-        frames.push(format!("r{name}"), Drawn::colors(through));
+        frames.push(format!("r{name}"), FrameDrawing::colors(through));
     }
 }
 
@@ -107,13 +107,13 @@ pub(super) fn surface_clip(frames: &mut Frames) {
         let [x, y, width, height] = area;
         let name = format!("x{x}y{y}_w{width}h{height}");
         let of = |draws| scene(vec![frame_buffer(0xfc11_1155)], vec![], draws);
-        let direct = Drawn::colors(of(image(area, area)));
+        let direct = FrameDrawing::colors(of(image(area, area)));
         frames.push(format!("{name}_A8R8G8B8"), direct);
         for (suffix, format) in
             [("", SurfaceFormat::R5G6B5), ("_B8", SurfaceFormat::B8), ("_G8B8", SurfaceFormat::G8B8)]
         {
             let view = scene(vec![Target::new(SIZE.0, SIZE.1, format)], vec![], image(area, area));
-            let drawn = Drawn { scene: of(vec![]), before: vec![], view: Some(view), shown: Shown::Colors };
+            let drawn = FrameDrawing { scene: of(vec![]), before: vec![], view: Some(view), shown: Buffer::Color };
             frames.push(format!("{name}{suffix}"), drawn);
         }
         // On a texture, the programs replace a clip width or height of 0 by the whole width or height.
@@ -129,6 +129,6 @@ pub(super) fn surface_clip(frames: &mut Frames) {
         let target = Target { name: "rt".into(), clear_color, ..Target::new(SIZE.0, SIZE.1, SurfaceFormat::R5G6B5) };
         let textures = vec![target_texture(TextureFormat::R5G6B5, 1)];
         let through = scene(vec![frame_buffer(0xff26_2422), target], textures, draws);
-        frames.push(format!("rt_{name}"), Drawn::colors(through));
+        frames.push(format!("rt_{name}"), FrameDrawing::colors(through));
     }
 }

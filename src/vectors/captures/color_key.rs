@@ -49,9 +49,9 @@ fn keyed(unit: usize, place: Vec<[f32; 2]>, state: TextureUnit, combiners: Combi
     Draw { combiners, ..textured(draw, unit, state, corners([0.0, 0.0, 64.0, 64.0])) }
 }
 
-fn drawn(clear: u32, textures: Vec<Texture>, draws: Vec<Draw>) -> Drawn {
+fn drawn(clear: u32, textures: Vec<Texture>, draws: Vec<Draw>) -> FrameDrawing {
     let scene: Scene = scene(vec![frame_buffer(clear)], textures, draws);
-    Drawn::colors(scene)
+    FrameDrawing::colors(scene)
 }
 
 /// Adds the frames of Color_key.

@@ -1,6 +1,6 @@
 //! Building blocks that the programs' draws share.
 
-use super::{Drawn, SIZE, images};
+use super::{FrameDrawing, SIZE, images};
 use ninebit::state::*;
 pub(super) use ninebit_program::registers::color_of as argb;
 use ninebit_program::text;
@@ -146,10 +146,10 @@ pub(super) const FAR_DEPTHS: DepthBuffer =
     DepthBuffer { format: DepthFormat::Z24S8, clear: 0xff_ffff, clear_stencil: 0 };
 
 /// Returns a frame of a single draw and its texture. If it tests depths, the buffer starts at the farthest depth.
-pub(super) fn one(clear: u32, texture: Option<&Texture>, draw: Draw) -> Drawn {
+pub(super) fn one(clear: u32, texture: Option<&Texture>, draw: Draw) -> FrameDrawing {
     let depth = draw.depth_test.is_some().then_some(FAR_DEPTHS);
     let target = Target { depth, ..frame_buffer(clear) };
-    Drawn::colors(scene(vec![target], texture.into_iter().cloned().collect(), vec![draw]))
+    FrameDrawing::colors(scene(vec![target], texture.into_iter().cloned().collect(), vec![draw]))
 }
 
 /// A scene under construction. Methods that add textures, palettes and targets return their indices.
@@ -213,8 +213,8 @@ impl Canvas {
     }
 
     /// Finishes a frame that shows the colours of the frame buffer.
-    pub(super) fn colors(self) -> Drawn {
-        Drawn::colors(self.scene)
+    pub(super) fn colors(self) -> FrameDrawing {
+        FrameDrawing::colors(self.scene)
     }
 }
 

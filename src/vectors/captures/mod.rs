@@ -65,29 +65,22 @@ pub const SOURCE: &str = "abaire/nxdk_pgraph_tests_golden_results (CC0-1.0), com
 /// R, G, B and A of the letters that the programs printed.
 pub const LETTERS: [u8; 4] = [255, 255, 255, 0];
 
-/// The part of the frame buffer that a capture shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Shown {
-    Colors,
-    /// The words of depth and stencil, shown as A8R8G8B8; 16-bit words are shown as R5G6B5.
-    DepthStencil,
-}
-
 /// The drawing of one frame: a scene whose first target is the frame buffer.
 #[derive(Clone, Debug)]
-struct Drawn {
+struct FrameDrawing {
     scene: Scene,
     /// Scenes that are drawn first. The memory of the first target of each becomes the texels of the texture of the same number.
     before: Vec<Scene>,
     /// Draws on the frame buffer's memory in a narrower format. Each row begins at the same address as before.
     view: Option<Scene>,
-    shown: Shown,
+    /// The buffer that the capture shows: words of depth and stencil as A8R8G8B8, 16-bit words as R5G6B5.
+    shown: Buffer,
 }
 
-impl Drawn {
+impl FrameDrawing {
     /// Returns a frame that shows the colours of a scene's first target.
-    fn colors(scene: Scene) -> Drawn {
-        Drawn { scene, before: Vec::new(), view: None, shown: Shown::Colors }
+    fn colors(scene: Scene) -> FrameDrawing {
+        FrameDrawing { scene, before: Vec::new(), view: None, shown: Buffer::Color }
     }
 }
 
@@ -134,7 +127,7 @@ pub fn captured() -> impl Iterator<Item = (&'static str, usize)> {
 }
 
 /// Builds a frame's scenes on demand: all frames together would take much memory.
-type Make = Arc<dyn Fn() -> Drawn + Send + Sync>;
+type Make = Arc<dyn Fn() -> FrameDrawing + Send + Sync>;
 
 /// The frames of a suite by name.
 #[derive(Default)]
@@ -142,18 +135,18 @@ struct Frames(Vec<(String, Make)>);
 
 impl Frames {
     /// Adds a frame whose scene is built already.
-    fn push(&mut self, name: impl Into<String>, drawn: Drawn) {
+    fn push(&mut self, name: impl Into<String>, drawn: FrameDrawing) {
         self.make(name, move || drawn.clone());
     }
 
     /// Adds two frames of a scene: its colours, and its words of depth and stencil.
     fn both(&mut self, name: &str, scene: Scene) {
-        self.push(format!("{name}_ZB"), Drawn { shown: Shown::DepthStencil, ..Drawn::colors(scene.clone()) });
-        self.push(name, Drawn::colors(scene));
+        self.push(format!("{name}_ZB"), FrameDrawing { shown: Buffer::Depth, ..FrameDrawing::colors(scene.clone()) });
+        self.push(name, FrameDrawing::colors(scene));
     }
 
     /// Adds a frame whose scene is built on demand.
-    fn make(&mut self, name: impl Into<String>, make: impl Fn() -> Drawn + Send + Sync + 'static) {
+    fn make(&mut self, name: impl Into<String>, make: impl Fn() -> FrameDrawing + Send + Sync + 'static) {
         self.0.push((name.into(), Arc::new(make)));
     }
 
@@ -319,7 +312,7 @@ impl Frame {
     }
 
     /// Returns the frame's scenes, of which none is left to be drawn before.
-    fn drawn(&self, options: &RenderOptions, policies: Policies) -> Result<Drawn, Vec<PlanError>> {
+    fn drawn(&self, options: &RenderOptions, policies: Policies) -> Result<FrameDrawing, Vec<PlanError>> {
         let mut drawn = (self.make)();
         for (before, texture) in std::mem::take(&mut drawn.before).iter().zip(&mut drawn.scene.textures) {
             let frames = render(&planned(before, policies)?, options);
@@ -334,7 +327,7 @@ impl Frame {
     /// # Errors
     /// Returns the plan's errors if a scene that is drawn before cannot be planned.
     pub fn scene(&self, options: &RenderOptions) -> Result<Option<Scene>, Vec<PlanError>> {
-        let Drawn { scene, view, .. } = self.drawn(options, Policies::DEFAULT)?;
+        let FrameDrawing { scene, view, .. } = self.drawn(options, Policies::DEFAULT)?;
         Ok(view.is_none().then_some(scene))
     }
 
@@ -353,7 +346,7 @@ impl Frame {
 /// The scenes of a frame with their plans.
 #[derive(Debug)]
 pub struct PreparedFrame {
-    drawn: Drawn,
+    drawn: FrameDrawing,
     policies: Policies,
     before: Vec<Plan>,
     main: Plan,
@@ -361,7 +354,7 @@ pub struct PreparedFrame {
 }
 
 impl PreparedFrame {
-    fn new(drawn: Drawn, policies: Policies) -> Result<PreparedFrame, Vec<PlanError>> {
+    fn new(drawn: FrameDrawing, policies: Policies) -> Result<PreparedFrame, Vec<PlanError>> {
         let before = drawn.before.iter().map(|scene| planned(scene, policies)).collect::<Result<_, _>>()?;
         let main = planned(&drawn.scene, policies)?;
         let view = drawn.view.as_ref().map(|scene| planned(scene, policies)).transpose()?;
@@ -396,7 +389,7 @@ impl PreparedFrame {
             shortcut::render(&plan, shortcuts, options, &mut frames, mask);
             frames
         };
-        let Drawn { scene, view, shown, .. } = &self.drawn;
+        let FrameDrawing { scene, view, shown, .. } = &self.drawn;
         let main = if self.before.is_empty() {
             Cow::Borrowed(&self.main)
         } else {
@@ -411,7 +404,7 @@ impl PreparedFrame {
         if let Some(view) = &self.view {
             put_back(&draw(view, None, Some(&words)).surfaces[0], &mut words);
         }
-        if *shown == Shown::DepthStencil
+        if *shown == Buffer::Depth
             && let Some(depth) = scene.targets[0].depth
         {
             let read = |word| shortcut::shown_depth(shortcuts, depth.format, depth_of(word));

@@ -88,7 +88,7 @@ struct Setup {
 /// Column and row from which on most frames are drawn.
 const CLIP: [u32; 2] = [150, 0];
 
-fn frame(setup: &Setup, shown: Shown) -> Drawn {
+fn frame(setup: &Setup, shown: Buffer) -> FrameDrawing {
     let (_, topology, positions, coordinates) = &setup.shape;
     let coordinates = &coordinates[..if *topology == Topology::Triangles { 3 } else { 4 }];
     let vertex = |(position, at): (&[f32; 4], &[f32; 2])| placed(*position, *at);
@@ -107,7 +107,7 @@ fn frame(setup: &Setup, shown: Shown) -> Drawn {
     draws.extend(marks(setup.clip));
     let fields = checker([argb(0xff00_ffff), argb(0xff00_0000)], 8);
     let texture = images::texture(TextureFormat::A8R8G8B8, [256; 2], fields);
-    Drawn { shown, ..Drawn::colors(scene(vec![target], vec![texture], draws)) }
+    FrameDrawing { shown, ..FrameDrawing::colors(scene(vec![target], vec![texture], draws)) }
 }
 
 /// Returns the pixels whose depths the programs print.
@@ -166,9 +166,9 @@ pub(super) fn buffers(frames: &mut Frames) {
                     let offset = PolygonOffset { bias: BIAS * f32::from(biased), factor };
                     let setup = Setup { format, shape: shape.clone(), offset, w_buffer, clip: CLIP };
                     let name_of_frame = named(&prefix, name, [biased, sloped]);
-                    frames.push(name_of_frame.clone(), frame(&setup, Shown::Colors));
+                    frames.push(name_of_frame.clone(), frame(&setup, Buffer::Color));
                     if !w_buffer || (sloped == 0 && name != "LargeZ") {
-                        frames.push(format!("{name_of_frame}_ZB"), frame(&setup, Shown::DepthStencil));
+                        frames.push(format!("{name_of_frame}_ZB"), frame(&setup, Buffer::Depth));
                     }
                 }
             }
@@ -190,7 +190,7 @@ pub(super) fn buffers(frames: &mut Frames) {
             [53.1875, 487.3125, 500_000.0, far],
         ];
         let setup = plain((name, Topology::Quads, positions, UP), false, CLIP);
-        for (suffix, shown) in [("", Shown::Colors), ("_ZB", Shown::DepthStencil)] {
+        for (suffix, shown) in [("", Buffer::Color), ("_ZB", Buffer::Depth)] {
             frames.push(format!("{}{suffix}", named("ZBuf24D", name, [0, 0])), frame(&setup, shown));
         }
     }
@@ -202,7 +202,7 @@ pub(super) fn buffers(frames: &mut Frames) {
         };
         for clip @ [x, y] in clips {
             let name = named("WBuf24D", &format!("Clip{}-{x:03}-{y:03}", &shape.0[..1]), [0, 1]);
-            frames.push(name, frame(&plain(shape.clone(), true, clip), Shown::Colors));
+            frames.push(name, frame(&plain(shape.clone(), true, clip), Buffer::Color));
         }
     }
 }

@@ -69,7 +69,7 @@ fn image() -> Texture {
 }
 
 /// Draws two triangles over a rectangle of the world. The matrix is multiplied by column vectors.
-fn shown(texture: &Texture, [top, bottom]: [f32; 2], mode: &str, matrix: &Matrix) -> Drawn {
+fn shown(texture: &Texture, [top, bottom]: [f32; 2], mode: &str, matrix: &Matrix) -> FrameDrawing {
     let vertex = |n: usize| {
         let [x, y] = corners([-2.75, top, 2.75, bottom])[n];
         let made = unit::transform(

@@ -26,7 +26,6 @@ fn magnitude(value: i64) -> Option<Vec<u8>> {
     byte(value.abs()).map(|b| vec![b; 4])
 }
 
-/// Reads the red of a register into one column.
 fn red(register: Register, column: &str) -> [Output; 1] {
     [Output { register, columns: vec![(column.to_owned(), 0)] }]
 }

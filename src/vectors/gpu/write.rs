@@ -67,7 +67,7 @@ pub(crate) struct Batches<'w> {
 
 /// The two files of a unit.
 #[derive(Debug)]
-pub(crate) struct Drawn {
+pub(crate) struct BatchFiles {
     /// Content of `UNIT.gpu.txt`.
     pub(crate) text: String,
     /// Content of `UNIT.gpu.raw`.
@@ -107,7 +107,7 @@ impl<'w> Batches<'w> {
     }
 
     /// Returns the files, or `None` for a unit without recipes.
-    pub(crate) fn finish(self) -> Option<Drawn> {
+    pub(crate) fn finish(self) -> Option<BatchFiles> {
         if recipes(self.writer.contents().unit.name()).is_empty() {
             return None;
         }
@@ -126,7 +126,7 @@ impl<'w> Batches<'w> {
             batch.sources.iter().for_each(|bytes| raw.extend_from_slice(bytes));
         }
         let rows = count(&batches);
-        Some(Drawn { text: text(self.writer, &batches), raw, rows, left_out: all - rows })
+        Some(BatchFiles { text: text(self.writer, &batches), raw, rows, left_out: all - rows })
     }
 }
 

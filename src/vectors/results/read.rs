@@ -90,7 +90,6 @@ fn observed(names: &str, results: &[Column]) -> Option<Vec<Observed>> {
     names.map(column).collect()
 }
 
-/// Reads a row.
 fn row(text: &str, line: usize, columns: &[Observed], results: &[Column]) -> Result<ResultRow, String> {
     let fields: Vec<&str> = text.split('\t').collect();
     let wanted = columns.len() + 2;

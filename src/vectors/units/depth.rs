@@ -93,7 +93,6 @@ impl Unit for DepthWord {
     }
 }
 
-/// The range of depths.
 pub(super) struct DepthRange;
 
 impl Unit for DepthRange {

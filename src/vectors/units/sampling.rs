@@ -156,7 +156,6 @@ pub(super) fn compared(shadow: state::ShadowComparison, format: DepthFormat, sto
     found.unwrap_or_default()
 }
 
-/// The layer of a volume.
 pub(super) struct VolumeLayer;
 
 impl Unit for VolumeLayer {

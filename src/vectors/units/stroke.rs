@@ -21,7 +21,6 @@ fn positions<const N: usize>(names: [&str; N]) -> [Column; N] {
     names.map(|name| Column::signed(name, 17, 0, FARTHEST))
 }
 
-/// Returns the columns of a pixel.
 fn pixel() -> [Column; 2] {
     ["in.column", "in.row"].map(|name| Column::unsigned(name, 10, 640))
 }

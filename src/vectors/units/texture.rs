@@ -116,7 +116,6 @@ impl Unit for LinearAddress {
     }
 }
 
-/// One linear step.
 pub(super) struct LinearStep;
 
 impl Unit for LinearStep {

@@ -46,7 +46,6 @@ fn find(wanted: &str) -> Result<Frame, Failure> {
     Err(unknown(format!("frames of {suite} are {}{more}", names.join(", "))))
 }
 
-/// Returns the scene of a frame as files.
 fn scene(frame: &Frame, register_words: bool) -> Result<SceneFiles, Failure> {
     let name = format!("{}/{}", frame.suite, frame.name);
     let refused = |why: &str| Failure::invalid("NB0525", format!("{name}: {why}"), "export another frame of the suite");

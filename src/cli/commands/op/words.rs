@@ -144,13 +144,11 @@ pub(crate) fn profile(word: &str) -> Result<Profile, String> {
     named("profile", word, &[])
 }
 
-/// Reads a blend equation.
 pub(super) fn equation(word: &str) -> Result<BlendEquation, String> {
     let word = plain(word);
     named("blend equation", word.strip_prefix("func").unwrap_or(&word), &[])
 }
 
-/// Reads a blend factor.
 pub(super) fn factor(word: &str) -> Result<BlendFactor, String> {
     let short = [
         ("0", "Zero"),
@@ -174,12 +172,10 @@ pub(super) fn factor(word: &str) -> Result<BlendFactor, String> {
     named("blend factor", &long, &[]).map_err(|message: String| message.replacen(&long, word, 1))
 }
 
-/// Reads a surface format.
 pub(super) fn surface(word: &str) -> Result<SurfaceFormat, String> {
     named("surface format", word, &[])
 }
 
-/// Reads an address mode.
 pub(super) fn address_mode(word: &str) -> Result<AddressMode, String> {
     let short = [("wrap", "Wrap"), ("repeat", "Wrap"), ("mirror", "Mirror"), ("mirrored_repeat", "Mirror")];
     named("address mode", word, &short)

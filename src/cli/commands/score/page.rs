@@ -42,7 +42,6 @@ impl Report<'_> {
     }
 }
 
-/// Returns the page.
 pub(super) fn page(report: &Report<'_>) -> String {
     let policy = format!(
         "default-src 'none'; img-src 'self' file:; style-src {}; base-uri 'none'; form-action 'none'",

@@ -48,7 +48,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if comparison.is_clean() { Ok(()) } else { Err(Failure::difference()) }
 }
 
-/// Returns the comparison as text.
 fn text(manifest: &Manifest, device: &Device, comparison: &Comparison) -> String {
     let mut text = [&device.vendor, &device.renderer, &device.version].map(|name| shown::name(name)).join(", ") + "\n";
     let (profile, level, revision) = (&manifest.profile, &manifest.level, manifest.behaviour_rev);

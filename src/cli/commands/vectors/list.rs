@@ -20,7 +20,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let (inputs, results) = (unit.inputs(), unit.results());
         let profiles: Vec<&str> = unit.profiles().iter().map(|profile| profile.name()).collect();
         let size = cases::size(&inputs);
-        let grade = handbook::of(unit);
+        let grade = handbook::grade(unit);
         let _ = writeln!(text, "{:<22}{:<9}{:<10}{}", unit.name(), grade, profiles.join(" "), unit.rules().join(" "));
         let _ = writeln!(text, "    {}", unit.about());
         let column =

@@ -6,7 +6,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::page::{head, source_hash};
 use crate::replay::panels::{GAP, opaque};
-use crate::replay::{Difference, Known, Origin, Outcome, Replayed, Summary, Traces};
+use crate::replay::{Comparison, Difference, Origin, Outcome, Replayed, Summary, Traces};
 use ninebit::shown;
 use ninebit_report::SideBySideLine;
 use ninebit_scene::diff::{CHANNELS, Histogram, ranges};
@@ -107,7 +107,7 @@ fn difference(n: usize, difference: &Difference) -> Markup {
             table {
                 tr { th { "expected" } td { code { (shown::name(&difference.expected)) } } }
                 tr { th { "drawn" } td { code { (difference.drawn) } } }
-                @if let Some(Known { origin: Origin::File(path), .. }) = &difference.known {
+                @if let Some(Comparison { origin: Origin::File(path), .. }) = &difference.known {
                     tr { th { "expected picture" } td { code { (shown::path(path)) } } }
                 }
             }
@@ -120,7 +120,7 @@ fn difference(n: usize, difference: &Difference) -> Markup {
     }
 }
 
-fn pictures(n: usize, known: &Known) -> Markup {
+fn pictures(n: usize, known: &Comparison) -> Markup {
     let first = &known.first;
     html! {
         figure id={ "figure" (n) } data-panels="3" data-scale=(known.scale) data-first={ (first.x) "," (first.y) } {
@@ -132,7 +132,7 @@ fn pictures(n: usize, known: &Known) -> Markup {
     }
 }
 
-fn histogram(known: &Known) -> Markup {
+fn histogram(known: &Comparison) -> Markup {
     let channels = &known.difference.channels;
     let rows = ranges().into_iter().filter(|(from, to)| channels.iter().any(|h| h.between(*from, *to) > 0));
     let row = |title: &str, value: &dyn Fn(&Histogram) -> u64| {
@@ -150,7 +150,7 @@ fn histogram(known: &Known) -> Markup {
     }
 }
 
-fn traces(known: &Known, traces: &Traces) -> Markup {
+fn traces(known: &Comparison, traces: &Traces) -> Markup {
     let first = &known.first;
     // The common beginning of both traces is folded away; the block in which they diverge is shown completely.
     let parted = traces.lines.iter().position(SideBySideLine::differs).unwrap_or(0);

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::replay::{Cause, Difference, Known, Origin, Outcome, Problem, Replayed, Summary};
+use crate::replay::{Cause, Comparison, Difference, Origin, Outcome, Problem, Replayed, Summary};
 use ninebit::shown;
 use ninebit_scene::diff::{Bucket, CHANNELS, Histogram};
 
@@ -70,7 +70,7 @@ pub(crate) fn histograms<'h>(channels: impl IntoIterator<Item = (&'static str, &
     channels.into_iter().map(channel).collect()
 }
 
-fn known(known: &Known) -> Value {
+fn known(known: &Comparison) -> Value {
     let difference = &known.difference;
     let first = &known.first;
     json!({

@@ -1,6 +1,7 @@
 //! Checks of lines, points and depth tests.
 
 use super::Check;
+use crate::legality;
 use crate::state::*;
 
 impl Check<'_> {
@@ -47,15 +48,7 @@ impl Check<'_> {
 
     /// Checks a depth test.
     pub(super) fn depth_test(&mut self, draw: &Draw, test: &DepthTest) {
-        if test.vertex_depths == VertexDepths::Steps && !matches!(draw.positions, Positions::Window) {
-            let help = "give window positions, or depths as fractions";
-            self.refuse(
-                "NB0206",
-                "DEP-1",
-                "vertex depths are steps of the buffer, and its positions are projected",
-                help,
-            );
-        }
+        self.accept(legality::draw::vertex_depths(test, &draw.positions, None));
         let PolygonOffset { bias, factor } = test.offset;
         if !bias.is_finite() || !factor.is_finite() {
             self.refuse(

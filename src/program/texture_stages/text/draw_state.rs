@@ -83,14 +83,14 @@ pub(super) fn instead(state: &str) -> &'static str {
 
 /// The value of a state: a word without its prefix, a number, or something else.
 #[derive(Clone, Debug)]
-enum Told {
+enum StateValue {
     Word(String),
     Number(u32),
     Other,
 }
 
 /// Values of states by name, in the order of their last statements.
-type Values = Vec<(&'static str, Told)>;
+type Values = Vec<(&'static str, StateValue)>;
 
 /// What the text says about the draw.
 #[derive(Debug, Default)]
@@ -107,7 +107,7 @@ impl DrawStates {
             if let Some((name, _)) = found {
                 let (_, values) = slot.get_or_insert_with(|| (span.clone(), Vec::new()));
                 values.retain(|(known, _)| known != name);
-                values.push((*name, told(value)));
+                values.push((*name, state_value(value)));
                 return true;
             }
         }
@@ -137,24 +137,26 @@ impl DrawStates {
     }
 }
 
-fn told(value: &Value<'_>) -> Told {
+fn state_value(value: &Value<'_>) -> StateValue {
     const PREFIXES: &[&str] = &["D3DBLENDOP_", "D3DBLEND_", "D3DCMP_", "D3DCULL_", "D3DSHADE_", "D3DFOG_", "D3DZB_"];
     match &value.parts[..] {
-        [Part { kind: PartKind::Integer(number), .. }] => Told::Number(*number),
-        [Part { kind: PartKind::Name, text, .. }] => Told::Word(without_prefix(text, PREFIXES).1.to_ascii_uppercase()),
-        _ => Told::Other,
+        [Part { kind: PartKind::Integer(number), .. }] => StateValue::Number(*number),
+        [Part { kind: PartKind::Name, text, .. }] => {
+            StateValue::Word(without_prefix(text, PREFIXES).1.to_ascii_uppercase())
+        }
+        _ => StateValue::Other,
     }
 }
 
-fn find<'v>(values: &'v Values, name: &str) -> Option<&'v Told> {
-    values.iter().find(|(known, _)| *known == name).map(|(_, told)| told)
+fn find<'v>(values: &'v Values, name: &str) -> Option<&'v StateValue> {
+    values.iter().find(|(known, _)| *known == name).map(|(_, value)| value)
 }
 
 /// Returns whether a state is switched off.
 fn off(values: &Values, name: &str) -> bool {
     match find(values, name) {
-        Some(Told::Number(0)) => true,
-        Some(Told::Word(word)) => word == "FALSE",
+        Some(StateValue::Number(0)) => true,
+        Some(StateValue::Word(word)) => word == "FALSE",
         _ => false,
     }
 }
@@ -173,9 +175,9 @@ const OPERATIONS: Named = ("KEEP ZERO REPLACE INCRSAT DECRSAT INVERT INCR DECR",
 /// Returns the scene's name of a state's value.
 fn named(values: &Values, state: &str, (api, scene): Named, default: &'static str) -> String {
     let found = match find(values, state) {
-        Some(Told::Number(number)) => (0..api.split(' ').count()).nth((*number as usize).wrapping_sub(1)),
-        Some(Told::Word(word)) => api.split(' ').position(|known| known == word),
-        Some(Told::Other) => None,
+        Some(StateValue::Number(number)) => (0..api.split(' ').count()).nth((*number as usize).wrapping_sub(1)),
+        Some(StateValue::Word(word)) => api.split(' ').position(|known| known == word),
+        Some(StateValue::Other) => None,
         None => return default.to_owned(),
     };
     found.and_then(|number| scene.get(number)).copied().unwrap_or("...").to_owned()
@@ -193,7 +195,7 @@ fn blend(values: &Values) -> Option<String> {
 
 fn alpha_test(values: &Values) -> Option<String> {
     let reference = match find(values, "AlphaRef") {
-        Some(Told::Number(number)) => (number & 255).to_string(),
+        Some(StateValue::Number(number)) => (number & 255).to_string(),
         Some(_) => "...".to_owned(),
         None => "0".to_owned(),
     };
@@ -209,11 +211,11 @@ fn depth_test(values: &Values) -> Option<String> {
 fn stencil_test(values: &Values) -> Option<String> {
     let mut fields = Vec::new();
     let mut field = |name: &str, state: &'static str, names: Option<Named>| {
-        let Some(told) = find(values, state) else { return };
-        fields.push(match (names, told) {
+        let Some(value) = find(values, state) else { return };
+        fields.push(match (names, value) {
             (Some(names), _) => format!("{name}: {}", named(values, state, names, "...")),
-            (None, Told::Number(number)) => format!("{name}: {}", number & 255),
-            (None, Told::Word(_) | Told::Other) => format!("{name}: ..."),
+            (None, StateValue::Number(number)) => format!("{name}: {}", number & 255),
+            (None, StateValue::Word(_) | StateValue::Other) => format!("{name}: ..."),
         });
     };
     field("function", "StencilFunc", Some(FUNCTIONS));
@@ -229,9 +231,9 @@ fn stencil_test(values: &Values) -> Option<String> {
 fn fog(values: &Values) -> Option<String> {
     const MODES: Named = ("EXP EXP2 LINEAR", &["Exp", "Exp2", "Linear"]);
     let none = |state| match find(values, state) {
-        None | Some(Told::Number(0)) => true,
-        Some(Told::Word(word)) => word == "NONE",
-        Some(Told::Number(_) | Told::Other) => false,
+        None | Some(StateValue::Number(0)) => true,
+        Some(StateValue::Word(word)) => word == "NONE",
+        Some(StateValue::Number(_) | StateValue::Other) => false,
     };
     let (table, vertex) = (!none("FogTableMode"), !none("FogVertexMode"));
     let mut fields = Vec::new();
@@ -246,7 +248,7 @@ fn fog(values: &Values) -> Option<String> {
         fields.extend([format!("mode: {mode}"), range.to_owned(), coordinate.to_owned()]);
     }
     let color = match find(values, "FogColor") {
-        Some(Told::Number(number)) => {
+        Some(StateValue::Number(number)) => {
             let [_, r, g, b] = number.to_be_bytes();
             format!("({r}, {g}, {b})")
         }
@@ -276,8 +278,8 @@ fn shade_model(values: &Values) -> Option<String> {
 
 fn color_mask(values: &Values) -> Option<String> {
     match find(values, "ColorWriteEnable") {
-        Some(Told::Number(bits)) if bits & 15 == 15 => None,
-        Some(Told::Number(bits)) => {
+        Some(StateValue::Number(bits)) if bits & 15 == 15 => None,
+        Some(StateValue::Number(bits)) => {
             let channels = [1, 2, 4, 8].map(|bit| (bits & bit != 0).to_string());
             Some(format!("color_mask: ({})", channels.join(", ")))
         }

@@ -6,7 +6,12 @@ use ninebit::limits::FileLimit;
 use std::path::Path;
 
 /// Reads a picture, or a DDS file with its levels and faces.
-pub(super) fn file<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request, source: Span) -> Option<Given> {
+pub(super) fn file<'a>(
+    reader: &mut Reader<'a>,
+    text: &'a str,
+    request: &Request,
+    source: Span,
+) -> Option<SourceTexels> {
     let raw = only::<String>(reader, text, "the name of one file")?;
     let limits = ImageLimits {
         maximum_side: reader.limits.texture_side + texture_levels::beyond(request.border),
@@ -34,11 +39,11 @@ pub(super) fn file<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request
     let faces = divide(words, format, [dds.width, dds.height], faces, dds.levels, false);
     let palette = dds.palette.filter(|_| format == TextureFormat::P8);
     let volume = dds.layers.is_some();
-    Some(Given { format, width: dds.width, height: dds.height, faces, volume, palette, place: source })
+    Some(SourceTexels { format, width: dds.width, height: dds.height, faces, volume, palette, place: source })
 }
 
 /// Reads a file of texels as they lie in memory.
-pub(super) fn memory<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request) -> Option<Given> {
+pub(super) fn memory<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request) -> Option<SourceTexels> {
     let fields = reader.read(&Raw::<source::RawFile<'a>>::new(text))?;
     let file = fields.file(reader)?;
     let sides = (fields.width(reader), fields.height(reader));
@@ -64,7 +69,7 @@ pub(super) fn memory<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Reque
         return reader.refuse(finding("NB0235", reader.span(&file), message, "another length", help).note(note));
     }
     let faces = divide(texels::from_bytes(&bytes, format), format, inside, pictures, levels, request.border);
-    Some(Given { format, width, height, faces, volume: layers.is_some(), palette: None, place })
+    Some(SourceTexels { format, width, height, faces, volume: layers.is_some(), palette: None, place })
 }
 
 /// Reads the file of a name and decodes it.

@@ -3,7 +3,6 @@
 use super::*;
 use ninebit::vertex::shader::{CONSTANTS, Opcode, SourceRegister};
 
-/// A program with its text.
 type Program = (Written, ProgramText);
 /// An entry of the scene's constants: its place, its first register, and its number of registers.
 type Entry = (Span, usize, usize);

@@ -56,7 +56,7 @@ fn usual(register: usize, mesh: bool) -> Option<Input> {
 pub(super) fn sources<'a>(
     reader: &mut Reader<'a>,
     raw: &Option<Raw<'a, source::ShaderInputs<'a>>>,
-    given: &Given,
+    given: &VertexOrigin,
     (written, text): (&Written, &ProgramText),
 ) -> Vec<Input> {
     let mut fields = [None; INPUTS];
@@ -115,12 +115,12 @@ fn input<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Attribute>, mesh: bo
 }
 
 /// Returns the value of a register at a vertex.
-pub(super) fn value(input: &Input, given: &Given, index: usize) -> [f32; 4] {
+pub(super) fn value(input: &Input, given: &VertexOrigin, index: usize) -> [f32; 4] {
     let (field, VertexData { vertices, extras, .. }) = match (input, given) {
-        (Input::Attribute(source), Given::Mesh(mesh, _)) => return attribute::evaluate(mesh, index, source),
+        (Input::Attribute(source), VertexOrigin::Mesh(mesh, _)) => return attribute::evaluate(mesh, index, source),
         // Only a value for all vertices: other attributes need a mesh.
-        (Input::Attribute(Source::Coordinates(values, _)), Given::Listed(_)) => return *values,
-        (Input::Field(field), Given::Listed(data)) => (field, &**data),
+        (Input::Attribute(Source::Coordinates(values, _)), VertexOrigin::Listed(_)) => return *values,
+        (Input::Field(field), VertexOrigin::Listed(data)) => (field, &**data),
         _ => return [0.0; 4],
     };
     match field {
