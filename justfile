@@ -57,6 +57,10 @@ readers:
 python *OPTIONS:
     src/python/check {{ OPTIONS }}
 
+# The drawer for GPUs, a workspace of its own: lints, and its tests by the adapter of this machine
+gpu:
+    src/gpu/check
+
 # The workloads beside llvmpipe
 peers *OPTIONS:
     benches/peers/compare.sh {{ OPTIONS }}

@@ -7,8 +7,8 @@ use ninebit_scene::{Diagnostic, Severity};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Chapters with codes that are no findings about a scene: outputs, internal faults, vector packs, replays, rules, planes and logs.
-const OTHERS: [&str; 7] = ["07", "08", "10", "12", "13", "14", "16"];
+/// Chapters with codes that are no findings about a scene: outputs, internal faults, vector packs, replays, rules, planes, logs and GPUs.
+const OTHERS: [&str; 8] = ["07", "08", "10", "12", "13", "14", "16", "17"];
 
 /// A row of the page's tables.
 pub struct Row {
@@ -100,6 +100,8 @@ fn exit(code: &str) -> u8 {
         "NB16" if ["NB1603", "NB1606"].contains(&code) => 5,
         "NB16" if code == "NB1607" => 0,
         "NB16" => 3,
+        "NB17" if code == "NB1701" => 4,
+        "NB17" if code == "NB1702" => 5,
         _ => 6,
     }
 }

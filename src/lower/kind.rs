@@ -19,6 +19,11 @@ pub(crate) fn enclosing(ranges: impl Iterator<Item = Range>) -> Range {
     ranges.fold((i64::MAX, i64::MIN), |all, one| (all.0.min(one.0), all.1.max(one.1)))
 }
 
+/// Returns whether numbers of a range need more than 32 bits.
+pub(crate) fn is_wide(range: Range) -> bool {
+    range.0 < i32::MIN.into() || range.1 > i32::MAX.into()
+}
+
 /// The range of mantissas of binary numbers.
 pub(crate) const MANTISSA: Range = (-i32::MAX as i64, i32::MAX as i64);
 

@@ -1,6 +1,6 @@
 //! Constants of a triangle, and what they are made of.
 
-use crate::kind::{ANY_BINARY, Kind, Range};
+use crate::kind::{ANY_BINARY, Kind, Range, is_wide, unpacked};
 
 /// A part of a number of the vertices, as [`Linear`](ninebit::raster::weights::Linear) has it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -57,6 +57,19 @@ impl Field {
                 Kind::Binary
             }
             _ => Kind::Number,
+        }
+    }
+
+    /// Returns the words of a constant's value in GLSL and WGSL: one; or two, the lower one first, of a number that may need more than 32 bits; or
+    /// mantissa and exponent of a binary number, which is [packed](crate::code::packed).
+    pub fn words(self, value: i64) -> Vec<u32> {
+        match self {
+            field if field.kind() == Kind::Binary => {
+                let (mantissa, exponent) = unpacked(value);
+                vec![mantissa as u32, exponent as u32]
+            }
+            field if is_wide(field.range()) => vec![value as u32, (value >> 32) as u32],
+            _ => vec![value as u32],
         }
     }
 

@@ -157,16 +157,16 @@ impl Syntax for C99 {
         let is_wide = operands.iter().any(|(_, is_wide)| *is_wide);
         let infix = |terms: &[String], operator: &str| Text::Open(format!("{} {operator} {}", terms[0], terms[1]));
         let suffix = if is_wide || result { "64" } else { "" };
+        let is_short = matches!(operation, Wide::Add | Wide::Subtract | Wide::Multiply | Wide::Scale) && !is_wide;
+        if is_short && result {
+            terms[0] = format!("(int64_t){}", terms[0]);
+        }
         match operation {
-            Wide::Add | Wide::Subtract | Wide::Multiply if result && !is_wide => {
-                terms[0] = format!("(int64_t){}", terms[0]);
-                infix(&terms, [" + ", " - ", " * "][operation as usize].trim())
-            }
             Wide::Add => infix(&terms, "+"),
             Wide::Subtract => infix(&terms, "-"),
-            Wide::Multiply => infix(&terms, "*"),
+            Wide::Multiply | Wide::Scale => infix(&terms, "*"),
             Wide::Bits => infix(&terms, "&"),
-            Wide::Divide => infix(&terms, "/"),
+            Wide::Divide | Wide::Quotient => infix(&terms, "/"),
             Wide::Least => Text::Term(format!("ninebit_least{suffix}({})", terms.join(", "))),
             Wide::Greatest => Text::Term(format!("ninebit_greatest{suffix}({})", terms.join(", "))),
             Wide::Select => Text::Open(format!("{} ? {} : {}", terms[0], terms[1], terms[2])),

@@ -77,6 +77,10 @@ impl Syntax for Glsl {
         shader::compare(a, operator, b, false)
     }
 
+    fn narrowed(&self, text: String) -> String {
+        format!("ninebit_narrow({text})")
+    }
+
     fn widened(&self, text: String) -> String {
         format!("ninebit_wide({text})")
     }

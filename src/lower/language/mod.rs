@@ -7,6 +7,7 @@ mod shader;
 mod verilog;
 mod wgsl;
 mod whole;
+mod wide;
 
 pub(crate) use verilog::port;
 
@@ -17,8 +18,11 @@ use ninebit::state::{CompareFunction, named};
 use crate::code::{Kind, Line, Operand, Operation, Range, Table, Test};
 use crate::helper::Helper;
 use crate::input::Input;
+use crate::kind::is_wide;
 use crate::pixel::{Function, Result};
 pub use whole::Draw;
+pub(crate) use wide::Wide;
+use wide::wide_operation;
 
 named! {
     /// A language that functions are printed in.
@@ -106,6 +110,10 @@ pub(crate) trait Syntax {
     fn widened(&self, text: String) -> String {
         text
     }
+    /// Converts a number of 64 bits to 32.
+    fn narrowed(&self, text: String) -> String {
+        text
+    }
     /// Returns how a part of a binary number is read.
     fn part(&self, binary: String, is_exponent: bool) -> String {
         format!("{binary}.{}", if is_exponent { "y" } else { "x" })
@@ -160,27 +168,6 @@ pub(crate) enum Call {
     Word,
     /// A helper, a table or a binary number.
     Named(&'static str),
-}
-
-/// An operation of numbers that may need more than 32 bits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Wide {
-    Add,
-    Subtract,
-    Multiply,
-    Least,
-    Greatest,
-    Bits,
-    Select,
-    Length,
-    Raise,
-    Lower,
-    Divide,
-}
-
-/// Returns whether numbers of a range need more than 32 bits.
-pub(crate) fn is_wide(range: Range) -> bool {
-    range.0 < i32::MIN.into() || range.1 > i32::MAX.into()
 }
 
 /// Tables, with their names in printed text.
@@ -310,14 +297,16 @@ impl<'f> Body<'f> {
         (self.operand(operand, kind).open(), rules.join(", "))
     }
 
-    fn is_wide(&self, operand: Operand) -> bool {
+    fn range(&self, operand: Operand) -> Range {
         match operand {
-            Operand::Constant(value) => is_wide((value, value)),
-            Operand::Line(line) => {
-                let line = &self.lines[line as usize];
-                line.operation.kind() == Kind::Number && is_wide(line.range)
-            }
+            Operand::Constant(value) => (value, value),
+            Operand::Line(line) => self.lines[line as usize].range,
         }
+    }
+
+    fn is_wide(&self, operand: Operand) -> bool {
+        let is_number = |line: usize| self.lines[line].operation.kind() == Kind::Number;
+        operand.line().is_none_or(is_number) && is_wide(self.range(operand))
     }
 
     fn test(&self, Test(function, operands): Test) -> String {
@@ -380,9 +369,9 @@ impl<'f> Body<'f> {
             }
             Operation::Entry(table, a) => {
                 let name = TABLES.iter().find(|(_, known)| *known == table).map_or("", |(name, _)| name);
-                Text::Term(format!("ninebit_{name}[{}]", self.operand(a, kind).open()))
+                Text::Term(format!("ninebit_{name}[{}]", self.index(a)))
             }
-            Operation::Fetch(unit, a) => Text::Term(syntax.word(unit, self.operand(a, kind).open())),
+            Operation::Fetch(unit, a) => Text::Term(syntax.word(unit, self.index(a))),
             Operation::Binary(a, b) => syntax.call(Call::Named("binary"), &self.open([a, b], kind)),
             Operation::Mantissa(a) => Text::Term(syntax.part(term(a), false)),
             Operation::Exponent(a) => Text::Term(syntax.part(term(a), true)),
@@ -406,21 +395,10 @@ impl<'f> Body<'f> {
             .collect()
     }
 
-    /// Prints an operation of numbers if more than 32 bits are needed.
-    fn wide(&self, line: &Line) -> Option<Text> {
-        let (wide, operands) = wide_operation(line.operation)?;
-        let result = is_wide(line.range);
-        if !result && !operands.iter().any(|operand| self.is_wide(*operand)) {
-            return None;
-        }
-        let mut terms: Vec<(String, bool)> = operands
-            .iter()
-            .map(|operand| (self.operand(*operand, Kind::Number).term(), self.is_wide(*operand)))
-            .collect();
-        if let Operation::Select(test, _) = line.operation {
-            terms.insert(0, (self.test(test), false));
-        }
-        Some(self.syntax.wide(wide, &terms, result))
+    /// Prints an index, which fits into 32 bits even if its range is not known to.
+    fn index(&self, operand: Operand) -> String {
+        let text = self.operand(operand, Kind::Number).open();
+        if self.is_wide(operand) { self.syntax.narrowed(text) } else { text }
     }
 
     fn open<const N: usize>(&self, operands: [Operand; N], kind: Kind) -> [String; N] {
@@ -437,26 +415,6 @@ impl<'f> Body<'f> {
         });
         if binds { text.open() } else { text.term() }
     }
-}
-
-/// Returns the operation as one that may be wide, and the operands that may be.
-fn wide_operation(operation: Operation) -> Option<(Wide, Vec<Operand>)> {
-    Some(match operation {
-        Operation::Add(a, b) => (Wide::Add, vec![a, b]),
-        Operation::Subtract(a, b) => (Wide::Subtract, vec![a, b]),
-        Operation::Multiply(a, b) => (Wide::Multiply, vec![a, b]),
-        Operation::Least(a, b) => (Wide::Least, vec![a, b]),
-        Operation::Greatest(a, b) => (Wide::Greatest, vec![a, b]),
-        Operation::Bits(a, mask) => (Wide::Bits, vec![a, Operand::Constant(mask)]),
-        Operation::Mask(a, mask) => (Wide::Bits, vec![a, mask]),
-        Operation::Select(_, values) => (Wide::Select, values.to_vec()),
-        Operation::Length(a) => (Wide::Length, vec![a]),
-        Operation::Raise(a, by) => (Wide::Raise, vec![a, by]),
-        Operation::Lower(a, by) => (Wide::Lower, vec![a, by]),
-        Operation::Divide(a, by) => (Wide::Divide, vec![a, by]),
-        Operation::Quotient(a, by) => (Wide::Divide, vec![a, Operand::Constant(by)]),
-        _ => return None,
-    })
 }
 
 /// Returns whether some functions have constants as inputs.

@@ -1,6 +1,6 @@
 //! Prints draws whole in GLSL and WGSL, which have no integers of 64 bits: numbers that need them are pairs of words, the lower one first.
 
-use super::whole::{Draw, WholeSyntax};
+use super::whole::WholeSyntax;
 use super::*;
 use crate::input::Local;
 
@@ -55,21 +55,31 @@ fn ninebit_below(a: vec2<u32>, b: vec2<u32>) -> bool {
 }
 fn ninebit_least(a: vec2<u32>, b: vec2<u32>) -> vec2<u32> { return select(b, a, ninebit_below(a, b)); }
 fn ninebit_greatest(a: vec2<u32>, b: vec2<u32>) -> vec2<u32> { return select(a, b, ninebit_below(a, b)); }
+fn ninebit_times(a: i32, b: i32) -> vec2<u32> {
+    let product = ninebit_multiply(vec2<u32>(u32(a), 0u), vec2<u32>(u32(b), 0u));
+    return vec2<u32>(product.x, product.y - (u32(b) & u32(a >> 31u)) - (u32(a) & u32(b >> 31u)));
+}
+// The product with a number of 0 to 65535.
+fn ninebit_scaled(a: i32, by: i32) -> vec2<u32> {
+    let low = (u32(a) & 0xffffu) * u32(by);
+    let high = (a >> 16u) * by + i32(low >> 16u);
+    return vec2<u32>((u32(high) << 16u) | (low & 0xffffu), u32(high >> 16u));
+}
+fn ninebit_length(a: i32) -> i32 { return i32(32u - countLeadingZeros(u32(a))); }
 fn ninebit_bits(a: vec2<u32>) -> i32 {
-    return i32(select(32u - countLeadingZeros(a.x), 64u - countLeadingZeros(a.y), a.y != 0u));
+    let is_high = a.y != 0u;
+    return i32(select(32u, 64u, is_high) - countLeadingZeros(select(a.x, a.y, is_high)));
 }
 fn ninebit_raise(a: vec2<u32>, by: i32) -> vec2<u32> {
-    let n = u32(by);
-    if n >= 32u { return vec2<u32>(0u, a.x << (n - 32u)); }
-    if n == 0u { return a; }
-    return vec2<u32>(a.x << n, (a.y << n) | (a.x >> (32u - n)));
+    let n = u32(by) & 31u;
+    let low = a.x << n;
+    return select(vec2<u32>(low, (a.y << n) | ((a.x >> 1u) >> (31u - n))), vec2<u32>(0u, low), by >= 32);
 }
 fn ninebit_lower(a: vec2<u32>, by: i32) -> vec2<u32> {
-    let n = u32(by);
-    let high = i32(a.y);
-    if n >= 32u { return vec2<u32>(u32(high >> (n - 32u)), u32(high >> 31u)); }
-    if n == 0u { return a; }
-    return vec2<u32>((a.x >> n) | (a.y << (32u - n)), u32(high >> n));
+    let n = u32(by) & 31u;
+    let high = u32(i32(a.y) >> n);
+    let low = (a.x >> n) | ((a.y << 1u) << (31u - n));
+    return select(vec2<u32>(low, high), vec2<u32>(high, u32(i32(a.y) >> 31u)), by >= 32);
 }
 fn ninebit_divide(a: vec2<u32>, b: vec2<u32>) -> vec2<u32> {
     if a.y == 0u && b.y == 0u { return vec2<u32>(a.x / b.x, 0u); }
@@ -85,6 +95,27 @@ fn ninebit_divide(a: vec2<u32>, b: vec2<u32>) -> vec2<u32> {
         }
     }
     return quotient;
+}
+// A rest and a quotient, after 2^by times b if the rest has it.
+fn ninebit_divided(n: vec3<u32>, b: vec2<u32>, by: i32) -> vec3<u32> {
+    let part = ninebit_raise(b, by);
+    let rest = ninebit_subtract(n.xy, part);
+    return select(vec3<u32>(rest, n.z + (1u << u32(by))), n, ninebit_below(n.xy, part));
+}
+// A quotient below 2^31 by a divisor below 2^58: its first 32 bits, one step of Newton for 2^62 through them, and the exact rest. The estimate is at
+// most 8 too small, or 1 too large.
+fn ninebit_quotient(a: vec2<u32>, b: vec2<u32>) -> i32 {
+    let bits = ninebit_bits(b);
+    let first = ninebit_raise(b, 64 - bits).y;
+    let start = 0xffffffffu / (first >> 16u);
+    let error = ninebit_subtract(vec2<u32>(0u, 0x10000u), ninebit_multiply(vec2<u32>(first, 0u), vec2<u32>(start, 0u)));
+    let correction = ninebit_times(i32(start), ninebit_narrow(ninebit_lower(error, 4)));
+    let inverse = vec2<u32>((start << 14u) + ninebit_lower(correction, 30).x, 0u);
+    let estimate = ninebit_lower(ninebit_multiply(vec2<u32>(ninebit_lower(a, bits - 1).x, 0u), inverse), 31).x;
+    let low = estimate - min(estimate, 2u);
+    let rest = ninebit_subtract(a, ninebit_multiply(b, vec2<u32>(low, 0u)));
+    let three = ninebit_divided(vec3<u32>(rest, low), b, 3);
+    return i32(ninebit_divided(ninebit_divided(ninebit_divided(three, b, 2), b, 1), b, 0).z);
 }
 ";
 
@@ -125,19 +156,32 @@ uvec2 ninebit_multiply(uvec2 a, uvec2 b)
 bool ninebit_below(uvec2 a, uvec2 b) { return int(a.y) < int(b.y) || (a.y == b.y && a.x < b.x); }
 uvec2 ninebit_least(uvec2 a, uvec2 b) { return ninebit_below(a, b) ? a : b; }
 uvec2 ninebit_greatest(uvec2 a, uvec2 b) { return ninebit_below(a, b) ? b : a; }
-int ninebit_bits(uvec2 a) { return a.y != 0u ? 33 + findMSB(a.y) : 1 + findMSB(a.x); }
-uvec2 ninebit_raise(uvec2 a, int n)
+uvec2 ninebit_times(int a, int b)
 {
-    if (n >= 32) return uvec2(0u, a.x << (n - 32));
-    if (n == 0) return a;
-    return uvec2(a.x << n, (a.y << n) | (a.x >> (32 - n)));
+    uvec2 product = ninebit_multiply(uvec2(uint(a), 0u), uvec2(uint(b), 0u));
+    return uvec2(product.x, product.y - (uint(b) & uint(a >> 31)) - (uint(a) & uint(b >> 31)));
 }
-uvec2 ninebit_lower(uvec2 a, int n)
+// The product with a number of 0 to 65535.
+uvec2 ninebit_scaled(int a, int by)
 {
-    int high = int(a.y);
-    if (n >= 32) return uvec2(uint(high >> (n - 32)), uint(high >> 31));
-    if (n == 0) return a;
-    return uvec2((a.x >> n) | (a.y << (32 - n)), uint(high >> n));
+    uint low = (uint(a) & 0xffffu) * uint(by);
+    int high = (a >> 16) * by + int(low >> 16);
+    return uvec2((uint(high) << 16) | (low & 0xffffu), uint(high >> 16));
+}
+int ninebit_length(int a) { return 1 + findMSB(uint(a)); }
+int ninebit_bits(uvec2 a) { return a.y != 0u ? 33 + findMSB(a.y) : 1 + findMSB(a.x); }
+uvec2 ninebit_raise(uvec2 a, int by)
+{
+    int n = by & 31;
+    uint low = a.x << n;
+    return by >= 32 ? uvec2(0u, low) : uvec2(low, (a.y << n) | ((a.x >> 1) >> (31 - n)));
+}
+uvec2 ninebit_lower(uvec2 a, int by)
+{
+    int n = by & 31;
+    uint high = uint(int(a.y) >> n);
+    uint low = (a.x >> n) | ((a.y << 1) << (31 - n));
+    return by >= 32 ? uvec2(high, uint(int(a.y) >> 31)) : uvec2(low, high);
 }
 uvec2 ninebit_divide(uvec2 a, uvec2 b)
 {
@@ -154,6 +198,28 @@ uvec2 ninebit_divide(uvec2 a, uvec2 b)
     }
     return quotient;
 }
+// A rest and a quotient, after 2^by times b if the rest has it.
+uvec3 ninebit_divided(uvec3 n, uvec2 b, int by)
+{
+    uvec2 part = ninebit_raise(b, by);
+    return ninebit_below(n.xy, part) ? n : uvec3(ninebit_subtract(n.xy, part), n.z + (1u << by));
+}
+// A quotient below 2^31 by a divisor below 2^58: its first 32 bits, one step of Newton for 2^62 through them, and the exact rest. The estimate is at
+// most 8 too small, or 1 too large.
+int ninebit_quotient(uvec2 a, uvec2 b)
+{
+    int bits = ninebit_bits(b);
+    uint first = ninebit_raise(b, 64 - bits).y;
+    uint start = 0xffffffffu / max(first >> 16, 1u);
+    uvec2 error = ninebit_subtract(uvec2(0u, 0x10000u), ninebit_multiply(uvec2(first, 0u), uvec2(start, 0u)));
+    uvec2 correction = ninebit_times(int(start), ninebit_narrow(ninebit_lower(error, 4)));
+    uvec2 inverse = uvec2((start << 14) + ninebit_lower(correction, 30).x, 0u);
+    uint estimate = ninebit_lower(ninebit_multiply(uvec2(ninebit_lower(a, bits - 1).x, 0u), inverse), 31).x;
+    uint low = estimate - min(estimate, 2u);
+    uvec2 rest = ninebit_subtract(a, ninebit_multiply(b, uvec2(low, 0u)));
+    uvec3 three = ninebit_divided(uvec3(rest, low), b, 3);
+    return int(ninebit_divided(ninebit_divided(ninebit_divided(three, b, 2), b, 1), b, 0).z);
+}
 ";
 
 /// Prints an operation of numbers of which some, or the result, are pairs. `pair` and `shift` write a pair of constants and a distance of shifts.
@@ -167,13 +233,18 @@ pub(super) fn wide(operation: Wide, operands: &[(String, bool)], result: bool, i
     let distance = |by: &str| if is_wgsl { format!("u32({by})") } else { by.to_string() };
     if !any && !result {
         return match operation {
-            Wide::Length => Text::Term(format!("ninebit_bits(ninebit_wide({}))", plain[0])),
+            Wide::Length => Text::Term(format!("ninebit_length({})", plain[0])),
             Wide::Raise => Text::Open(format!("{} << {}", plain[0], distance(plain[1]))),
             _ => Text::Open(format!("{} >> {}", plain[0], distance(&format!("min({}, 31)", plain[1])))),
         };
     }
     let of = match operation {
         Wide::Length => return Text::Term(format!("ninebit_bits({})", pair(&operands[0]))),
+        Wide::Quotient => {
+            return Text::Term(format!("ninebit_quotient({}, {})", pair(&operands[0]), pair(&operands[1])));
+        }
+        Wide::Scale => format!("ninebit_scaled({}, {})", plain[0], plain[1]),
+        Wide::Multiply if !any => format!("ninebit_times({}, {})", plain[0], plain[1]),
         Wide::Raise => format!("ninebit_raise({}, {})", pair(&operands[0]), plain[1]),
         Wide::Lower => format!("ninebit_lower({}, {})", pair(&operands[0]), plain[1]),
         Wide::Select if is_wgsl => format!("select({}, {}, {})", pair(&operands[2]), pair(&operands[1]), plain[0]),
@@ -259,9 +330,6 @@ impl WholeSyntax for wgsl::Wgsl {
              fn ninebit_covers(triangle: NinebitTriangle, x: i32, y: i32) -> bool {{\n{lines}    return {test} != 0;\n}}\n"
         )
     }
-    fn setup(&self, _: &Draw<'_>) -> String {
-        String::new()
-    }
 }
 
 impl WholeSyntax for glsl::Glsl {
@@ -286,8 +354,5 @@ impl WholeSyntax for glsl::Glsl {
             "\n// Whether a triangle covers a pixel (RAS-2, RAS-3).\n\
              bool ninebit_covers(NinebitTriangle triangle, int x, int y)\n{{\n{lines}    return {test} != 0;\n}}\n"
         )
-    }
-    fn setup(&self, _: &Draw<'_>) -> String {
-        String::new()
     }
 }

@@ -82,6 +82,10 @@ impl Syntax for Wgsl {
         shader::compare(a, operator, b, true)
     }
 
+    fn narrowed(&self, text: String) -> String {
+        format!("ninebit_narrow({text})")
+    }
+
     fn widened(&self, text: String) -> String {
         format!("ninebit_wide({text})")
     }

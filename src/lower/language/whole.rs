@@ -37,7 +37,9 @@ pub(crate) trait WholeSyntax: Syntax {
     /// Prints the function that tells whether a triangle covers a pixel, around its lines.
     fn coverage(&self, lines: &str, test: &str) -> String;
     /// Prints a function that makes the constants of a triangle; nothing where the host makes them.
-    fn setup(&self, draw: &Draw<'_>) -> String;
+    fn setup(&self, _draw: &Draw<'_>) -> String {
+        String::new()
+    }
 }
 
 impl Language {
@@ -66,7 +68,7 @@ impl Language {
         }
         let (lines, result) = coverage();
         let body = Body::within(LONGEST, syntax, &lines, (&[result], &[]));
-        out.push_str(&whole.coverage(&body.printed(), &body.operand(result, Kind::Number).open()));
+        out.push_str(&whole.coverage(&body.printed(), &body.operand(result, Kind::Number).term()));
         for draw in draws {
             out.push_str(&whole.setup(draw));
             out.push('\n');

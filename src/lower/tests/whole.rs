@@ -26,7 +26,7 @@ use ninebit::state::{Named as _, Policies, Scene};
 use ninebit_lower::Refusal;
 use ninebit_test_support::random_scene;
 use proptest::strategy::{Strategy, ValueTree};
-use setting::{any_policies, compiler, python, runner, setting, works};
+use setting::{GLSL_COMPILER, any_policies, compiler, python, runner, setting, works};
 
 /// Returns the scenes of the repository, sorted.
 fn scenes() -> Vec<PathBuf> {
@@ -62,6 +62,8 @@ enum Way {
     Lines,
     /// Printed in C and compiled.
     C,
+    /// Printed in GLSL and compiled, not run.
+    Glsl,
     /// Printed in WGSL, for scenes that are small enough.
     Wgsl,
 }
@@ -77,6 +79,10 @@ fn hold(scene: &Scene, policies: Policies, way: Way, what: &str) -> Result<(), S
     let found = match way {
         Way::Lines => printed.run(),
         Way::C => printed.compiled(folder.path()).unwrap_or_else(|error| panic!("{what}: {error}")),
+        Way::Glsl => {
+            printed.validated(folder.path()).unwrap_or_else(|error| panic!("{what}: {error}"));
+            return Ok(());
+        }
         Way::Wgsl if !printed.is_plain() || printed.comparisons() > MAX_COMPARISONS => {
             return Err("too large".to_string());
         }
@@ -124,6 +130,13 @@ fn lines_of_committed_scenes_draw_them() {
 fn printed_c_draws_committed_scenes() {
     if works(&compiler(), &["--version"]) {
         hold_committed(Way::C, setting("NINEBIT_WHOLE_EVERY").unwrap_or(16) as usize);
+    }
+}
+
+#[test]
+fn printed_glsl_compiles() {
+    if works(GLSL_COMPILER, &["--version"]) {
+        hold_committed(Way::Glsl, setting("NINEBIT_WHOLE_EVERY").unwrap_or(7) as usize);
     }
 }
 

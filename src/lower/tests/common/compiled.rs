@@ -12,7 +12,7 @@ use ninebit::limits::MEMORY_IMAGE;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::raster::stroke::Figure;
 use ninebit_files::read::{self, Kind};
-use ninebit_lower::{Attribute, Draw, Field, Language};
+use ninebit_lower::{Attribute, Field, Language};
 
 use crate::drawn::Printed;
 use crate::setting::{bytes, compiler, run};
@@ -103,14 +103,7 @@ int main(int count, char **names)
 impl Printed<'_> {
     /// Returns the functions in C, with a program that draws by them.
     pub fn c_text(&self) -> String {
-        let draws: Vec<Draw<'_>> = (self.draws.iter().enumerate())
-            .map(|(n, (function, setup))| Draw {
-                name: format!("draw{n}"),
-                about: format!("draw {n}"),
-                function,
-                setup,
-            })
-            .collect();
+        let draws = self.named();
         let mut text = Language::C99.print_whole(&draws).unwrap();
         let list = |of: &dyn Fn(usize) -> String| (0..draws.len()).map(|n| of(n) + ", ").collect::<String>();
         let _ = write!(
@@ -127,16 +120,9 @@ impl Printed<'_> {
     /// Returns what the program reads. Textures that are targets hold what the engine has drawn.
     pub fn given(&self) -> Vec<u32> {
         let plan = self.plan;
-        let frames = cleared(plan);
-        let mut given = vec![frames.surfaces.len() as u32, plan.draws().len() as u32];
-        for surface in &frames.surfaces {
-            let mut depth = surface.depth.clone();
-            depth.resize(surface.words.len(), 0);
-            given.extend([surface.width, surface.words.len() as u32]);
-            given.extend(surface.words.iter().chain(&depth));
-        }
+        let mut given = self.targets(&cleared(plan));
         for (number, draw) in plan.draws().iter().enumerate() {
-            let before = if plan.reads_target(draw) { self.before(number) } else { Frames { surfaces: Vec::new() } };
+            let before = self.before(number);
             let words = TextureWords::new(plan, &plan.draws()[number..=number], &before.surfaces);
             let height = plan.targets()[draw.target].height.into();
             let mut drawn = Vec::new();
@@ -202,8 +188,23 @@ impl Printed<'_> {
         out.extend(spans.iter().flatten().map(|n| *n as u32));
     }
 
-    /// Returns the frames before a draw.
+    /// Returns the head of what a program reads: how many targets and draws there are, and what targets hold.
+    pub fn targets(&self, frames: &Frames) -> Vec<u32> {
+        let mut given = vec![frames.surfaces.len() as u32, self.plan.draws().len() as u32];
+        for surface in &frames.surfaces {
+            let mut depth = surface.depth.clone();
+            depth.resize(surface.words.len(), 0);
+            given.extend([surface.width, surface.words.len() as u32]);
+            given.extend(surface.words.iter().chain(&depth));
+        }
+        given
+    }
+
+    /// Returns the frames before a draw that reads them.
     pub fn before(&self, number: usize) -> Frames {
+        if !self.plan.reads_target(&self.plan.draws()[number]) {
+            return Frames { surfaces: Vec::new() };
+        }
         let mut scene = self.scene.clone();
         scene.draws.truncate(number);
         let options = PlanOptions { policies: self.plan.policies, ..PlanOptions::default() };

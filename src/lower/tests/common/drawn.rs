@@ -9,7 +9,7 @@ use ninebit::frame::Frames;
 use ninebit::plan::Plan;
 use ninebit::state::{Named, Scene};
 use ninebit_lower::code::{Given, Test, run, value_of};
-use ninebit_lower::{Field, Function, Input, Options, Result, Setup};
+use ninebit_lower::{Draw, Field, Function, Input, Options, Result, Setup};
 
 /// The functions of a scene's draws.
 pub struct Printed<'p> {
@@ -56,6 +56,18 @@ impl<'p> Printed<'p> {
             draws.push((function, setup));
         }
         Ok(Printed { scene, plan, draws })
+    }
+
+    /// Returns the draws with names, `draw0` and so on.
+    pub fn named(&self) -> Vec<Draw<'_>> {
+        (self.draws.iter().enumerate())
+            .map(|(n, (function, setup))| Draw {
+                name: format!("draw{n}"),
+                about: format!("draw {n}"),
+                function,
+                setup,
+            })
+            .collect()
     }
 
     /// Returns the memories of a draw's units.

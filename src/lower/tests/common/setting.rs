@@ -86,6 +86,9 @@ pub fn python() -> String {
     std::env::var("NINEBIT_LOWER_PYTHON").unwrap_or_else(|_| "python3".to_string())
 }
 
+/// The reference compiler of GLSL.
+pub const GLSL_COMPILER: &str = "glslangValidator";
+
 /// Returns the name of the C compiler.
 pub fn compiler() -> String {
     std::env::var("CC").unwrap_or_else(|_| "cc".to_string())

@@ -3,16 +3,17 @@
 use std::collections::HashMap;
 use std::fmt::Write;
 use std::path::Path;
+use std::process::Command;
 
 use ninebit::engine::context::TriangleContext;
 use ninebit::engine::walk::triangles;
 use ninebit::engine::{TextureWords, cleared};
 use ninebit::frame::Frames;
 use ninebit::raster::stroke::Figure;
-use ninebit_lower::{Draw, Field, Language, Part};
+use ninebit_lower::{Field, Language, Part};
 
 use crate::drawn::Printed;
-use crate::setting::{bytes, drawing, run};
+use crate::setting::{GLSL_COMPILER, bytes, drawing, run};
 
 const HEAD: &str = "
 struct Bounds { width: u32, height: u32, x: u32, y: u32, right: u32, bottom: u32, triangles: u32, unused: u32 }
@@ -24,7 +25,31 @@ struct Bounds { width: u32, height: u32, x: u32, y: u32, right: u32, bottom: u32
 fn ninebit_texel(unit: i32, at: i32) -> u32 { return memory[memory[unit] + u32(at)]; }
 ";
 
+/// What the host of printed GLSL provides.
+const GLSL_HEAD: &str = "
+layout(std430, binding = 0) readonly buffer Memory { uint memory[]; };
+layout(std430, binding = 1) readonly buffer Triangles { NinebitTriangle triangles[]; };
+layout(std430, binding = 2) buffer Words { uint words[]; };
+uint ninebit_texel(int unit, int at) { return memory[65536 * unit + at]; }
+layout(local_size_x = 64) in;
+";
+
 impl Printed<'_> {
+    /// Compiles the functions in GLSL.
+    ///
+    /// # Errors
+    /// What the compiler says.
+    pub fn validated(&self, folder: &Path) -> Result<(), String> {
+        let mut text =
+            format!("#version 430\n{}{GLSL_HEAD}void main()\n{{\n", Language::Glsl.print_whole(&self.named()).unwrap());
+        text += "    NinebitTriangle triangle = triangles[0];\n    if (!ninebit_covers(triangle, 1, 2)) return;\n";
+        for n in 0..self.draws.len() {
+            let _ = writeln!(text, "    if (draw{n}(triangle, 1, 2, words[0], words[1])) words[2] = {n}u;");
+        }
+        std::fs::write(folder.join("whole.comp"), text + "}\n").unwrap();
+        run(Command::new(GLSL_COMPILER).arg("whole.comp"), folder)
+    }
+
     /// Returns whether the shader can draw it: triangles alone, in one window each.
     pub fn is_plain(&self) -> bool {
         self.plan.draws().iter().all(|draw| {
@@ -44,14 +69,7 @@ impl Printed<'_> {
     }
 
     fn wgsl_text(&self) -> String {
-        let draws: Vec<Draw<'_>> = (self.draws.iter().enumerate())
-            .map(|(n, (function, setup))| Draw {
-                name: format!("draw{n}"),
-                about: format!("draw {n}"),
-                function,
-                setup,
-            })
-            .collect();
+        let draws = self.named();
         let mut text = Language::Wgsl.print_whole(&draws).unwrap() + HEAD;
         for n in 0..draws.len() {
             let _ = write!(
@@ -75,15 +93,9 @@ impl Printed<'_> {
     pub fn shaded(&self, folder: &Path) -> Result<Frames, String> {
         let plan = self.plan;
         let mut frames = cleared(plan);
-        let mut given = vec![frames.surfaces.len() as u32, plan.draws().len() as u32];
-        for surface in &frames.surfaces {
-            let mut depth = surface.depth.clone();
-            depth.resize(surface.words.len(), 0);
-            given.extend([surface.width, surface.words.len() as u32]);
-            given.extend(surface.words.iter().chain(&depth));
-        }
+        let mut given = self.targets(&frames);
         for (number, draw) in plan.draws().iter().enumerate() {
-            let before = if plan.reads_target(draw) { self.before(number) } else { Frames { surfaces: Vec::new() } };
+            let before = self.before(number);
             let words = TextureWords::new(plan, &plan.draws()[number..=number], &before.surfaces);
             let window = draw.windows.first().map_or([0; 4], |w| [w.x, w.y, w.x + w.width, w.y + w.height]);
             let mut all = Vec::new();
@@ -114,31 +126,19 @@ impl Printed<'_> {
 
 /// Returns the constants of a triangle in the layout of the printed structure.
 fn triangle(constants: &HashMap<Field, i64>) -> Vec<u32> {
-    let mut out = Vec::new();
-    let of = |field: Field| constants.get(&field).copied().unwrap_or(0);
-    let single = |field: Field, out: &mut Vec<u32>| out.push(of(field) as u32);
-    let wide = |field: Field, out: &mut Vec<u32>| out.extend([of(field) as u32, (of(field) >> 32) as u32]);
-    let binary = |field: Field, out: &mut Vec<u32>| {
-        let packed = of(field);
-        out.extend([(packed >> 16) as u32, ((packed & 0xffff) - 0x8000) as u32]);
-    };
-    (0..3).for_each(|k| single(Field::EdgeX(k), &mut out));
-    (0..3).for_each(|k| single(Field::EdgeY(k), &mut out));
-    (0..3).for_each(|k| wide(Field::Edge(k), &mut out));
-    (0..3).for_each(|k| single(Field::Owns(k), &mut out));
-    out.push(0);
-    (0..3).for_each(|k| binary(Field::Ratio(k), &mut out));
-    (0..24).for_each(|n| single(Field::Color(n / 12, n / 3 % 4, n % 3), &mut out));
-    for n in 0..16 {
-        Part::ALL.iter().for_each(|part| binary(Field::Coordinate(n / 4, n % 4, *part), &mut out));
+    let mut fields: Vec<Field> = (0..3).map(Field::EdgeX).chain((0..3).map(Field::EdgeY)).collect();
+    fields.extend((0..3).map(Field::Edge).chain((0..3).map(Field::Owns)).chain((0..3).map(Field::Ratio)));
+    fields.extend((0..24).map(|n| Field::Color(n / 12, n / 3 % 4, n % 3)));
+    fields.extend((0..16).flat_map(|n| Part::ALL.map(|part| Field::Coordinate(n / 4, n % 4, part))));
+    fields.extend(Part::ALL.map(Field::Fog).into_iter().chain([Field::FogByte]).chain((0..3).map(Field::Depth)));
+    fields.extend((0..9).map(|n| Field::DepthDifference(n / 3, n % 3)).chain([Field::Offset, Field::OffsetExponent]));
+    let mut out: Vec<u32> = Vec::new();
+    for field in fields {
+        let words = field.words(constants.get(&field).copied().unwrap_or(0));
+        // Pairs stand at even places.
+        out.resize(out.len().next_multiple_of(words.len()), 0);
+        out.extend(words);
     }
-    Part::ALL.iter().for_each(|part| binary(Field::Fog(*part), &mut out));
-    single(Field::FogByte, &mut out);
-    out.push(0);
-    (0..3).for_each(|k| binary(Field::Depth(k), &mut out));
-    (0..9).for_each(|n| binary(Field::DepthDifference(n / 3, n % 3), &mut out));
-    wide(Field::Offset, &mut out);
-    single(Field::OffsetExponent, &mut out);
     out.push(0);
     assert_eq!(out.len(), 178);
     out

@@ -1,0 +1,162 @@
+//! Draws scenes by a GPU and compares every stored word with the engine's. Without an adapter the tests are ignored.
+//!
+//! `NINEBIT_GPU_ADAPTER` names the adapter, `NINEBIT_GPU_SCENES` is the number of random scenes, `NINEBIT_WHOLE_SEED` selects others, and
+//! `NINEBIT_WHOLE_EVERY` is a step through the scenes of the repository.
+#![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
+#![allow(missing_docs, unreachable_pub, dead_code, reason = "a shared file of which a part is used")]
+
+#[path = "../../lower/tests/common/setting.rs"]
+mod setting;
+
+use std::path::{Path, PathBuf};
+
+use libtest_mimic::{Arguments, Failed, Trial};
+use ninebit::engine::{RenderOptions, render};
+use ninebit::limits::Limits;
+use ninebit::plan::{Plan, PlanOptions};
+use ninebit::random::Random;
+use ninebit::state::{Policies, Scene, TextureImage};
+use ninebit_gpu::{Failure, Gpu, Renderer, adapters, difference};
+use ninebit_test_support::random_scene;
+use proptest::strategy::{Strategy, ValueTree};
+use setting::{any_policies, runner, setting};
+use walkdir::WalkDir;
+
+const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../vectors/scenes");
+
+fn main() {
+    let arguments = Arguments::from_args();
+    let none = adapters().is_empty();
+    let trial = |name: &str, run: fn() -> Result<(), Failed>| Trial::test(name, run).with_ignored_flag(none);
+    let trials = vec![
+        trial("committed_scenes_have_the_words_of_the_engine", committed),
+        trial("random_scenes_have_the_words_of_the_engine", random),
+        trial("draws_that_are_not_printed_fall_back_or_refuse", fallback),
+        trial("targets_of_another_texel_size_are_converted", converted),
+        trial("a_difference_is_found", found),
+        trial("adapters_are_chosen_by_number_and_name", chosen),
+        trial("limits_refuse_by_name", limits),
+    ];
+    libtest_mimic::run(&arguments, trials).exit();
+}
+
+fn open() -> Gpu {
+    let wanted = std::env::var("NINEBIT_GPU_ADAPTER").ok();
+    Gpu::open(wanted.as_deref()).unwrap()
+}
+
+/// Draws a scene, and says how it differs from the engine's. Returns whether all of it was printed.
+fn hold(gpu: &Gpu, scene: &Scene, policies: Policies, what: &str) -> Result<bool, Failed> {
+    let plan = Plan::compile(scene, &PlanOptions { policies, ..PlanOptions::default() }).unwrap();
+    let renderer = Renderer::new(gpu, scene, &plan, true).map_err(|failure| format!("{what}: {}", failure.text()))?;
+    // Twice, since a frame must not depend on the one before.
+    for _ in 0..2 {
+        renderer.draw().map_err(|failure| format!("{what}: {}", failure.text()))?;
+    }
+    let found = renderer.frames().map_err(|failure| failure.text())?;
+    match difference(&plan, &render(&plan, &RenderOptions::default()), &found) {
+        Some(text) => Err(format!("{what}: {text}").into()),
+        None => Ok(renderer.fallbacks.is_empty()),
+    }
+}
+
+/// Loads a scene of the repository; `None` if the file is a part of others.
+fn load(path: &Path) -> Option<Scene> {
+    ninebit_scene::load(path, &Limits::default()).ok().map(|loaded| loaded.scene)
+}
+
+fn committed() -> Result<(), Failed> {
+    let gpu = open();
+    let of = |path: &PathBuf| {
+        let name = path.to_string_lossy();
+        name.ends_with(".ron") && !name.ends_with(".expect.ron")
+    };
+    let all = WalkDir::new(SCENES).sort_by_file_name().into_iter().map(|entry| entry.unwrap().into_path()).filter(of);
+    let (mut whole, mut drawn) = (0, 0);
+    for path in all.step_by(setting("NINEBIT_WHOLE_EVERY").unwrap_or(1) as usize) {
+        let Some(scene) = load(&path) else { continue };
+        drawn += 1;
+        whole += u32::from(hold(&gpu, &scene, Policies::DEFAULT, &path.to_string_lossy())?);
+    }
+    println!("{whole} of {drawn} scenes are printed");
+    if whole == 0 { Err("no scene is printed".into()) } else { Ok(()) }
+}
+
+fn random() -> Result<(), Failed> {
+    let (gpu, seed) = (open(), setting("NINEBIT_WHOLE_SEED").unwrap_or(44));
+    let (mut runner, mut random, mut whole) = (runner(seed), Random::seeded(seed), 0);
+    let (scenes, count) = (random_scene::scene(), setting("NINEBIT_GPU_SCENES").unwrap_or(300));
+    for number in 0..count {
+        let scene = scenes.new_tree(&mut runner).unwrap().current();
+        let policies = if number % 2 == 1 { any_policies(&mut random) } else { Policies::DEFAULT };
+        whole += u64::from(hold(&gpu, &scene, policies, &format!("scene {number} of seed {seed}"))?);
+    }
+    println!("{whole} of {count} scenes are printed");
+    if whole * 4 < count { Err("too few scenes are printed".into()) } else { Ok(()) }
+}
+
+/// Loads a scene by its name.
+fn scene(name: &str) -> Scene {
+    load(&Path::new(SCENES).join(name)).unwrap()
+}
+
+/// Returns what a renderer is refused for.
+fn refusal(gpu: &Gpu, scene: &Scene) -> Failure {
+    let plan = Plan::compile(scene, &PlanOptions::default()).unwrap();
+    Renderer::new(gpu, scene, &plan, false).map(|_| ()).unwrap_err()
+}
+
+fn fallback() -> Result<(), Failed> {
+    let (gpu, shader) = (open(), scene("bench/w7.ron"));
+    let failure = refusal(&gpu, &shader);
+    assert_eq!(failure.exit(), 3);
+    assert!(failure.text().contains("NB0543") && failure.text().contains("a texture shader"), "{}", failure.text());
+    assert!(!hold(&gpu, &shader, Policies::DEFAULT, "w7")?);
+    Ok(())
+}
+
+/// Returns whether a scene reads a target as texels of another size.
+fn converts(scene: &Scene) -> bool {
+    scene.textures.iter().any(|texture| match &texture.image {
+        TextureImage::Target { target } => scene.targets[*target].format.bytes() != texture.format.bytes(),
+        _ => false,
+    })
+}
+
+fn converted() -> Result<(), Failed> {
+    let scene = scene("buffers/bytes.ron");
+    assert!(converts(&scene));
+    hold(&open(), &scene, Policies::DEFAULT, "bytes").map(|_| ())
+}
+
+fn limits() -> Result<(), Failed> {
+    let gpu = open().within(1 << 16);
+    let failure = refusal(&gpu, &scene("bench/w1.ron"));
+    assert_eq!(failure.exit(), 5);
+    assert!(failure.text().contains("NB1702") && failure.text().contains("the words of a target take 1228800 bytes"));
+    Ok(())
+}
+
+fn found() -> Result<(), Failed> {
+    let scene = scene("bench/w1.ron");
+    let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
+    let wanted = render(&plan, &RenderOptions::default());
+    let mut found = wanted.clone();
+    assert_eq!(difference(&plan, &wanted, &found), None);
+    found.surfaces[0].words[641] ^= 1;
+    let text = difference(&plan, &wanted, &found).unwrap();
+    assert!(text.starts_with("target 0, 1 pixels: word of 1,1 is") && text.contains("texture0.r"), "{text}");
+    Ok(())
+}
+
+fn chosen() -> Result<(), Failed> {
+    let name = adapters()[0].get_info().name;
+    assert!(Gpu::open(Some("0")).unwrap().name.starts_with(&name));
+    assert!(Gpu::open(Some(&name.to_uppercase())).unwrap().name.starts_with(&name));
+    for wanted in ["4096", "no such adapter"] {
+        let failure = Gpu::open(Some(wanted)).map(|_| ()).unwrap_err();
+        assert_eq!(failure.exit(), 4);
+        assert!(failure.text().contains("NB1701") && failure.text().contains(wanted), "{}", failure.text());
+    }
+    Ok(())
+}
