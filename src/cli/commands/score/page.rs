@@ -216,6 +216,10 @@ fn case(report: &Report<'_>, cause: &Cause, evidence: Option<&Evidence>) -> Mark
                 (thousands(cause.pixels)) " pixels of these programs differ for it. The rules:"
             }
             pre { @for id in &rules { "ninebit rule " (id) "\n" } (report.command) " --suite " (suite) }
+        } @else {
+            h3 { "For a bug report" }
+            p { "The renderer " (does(cause.variant)) ". The chip does not: " (thousands(cause.pixels)) " results differ for it. The rules:" }
+            pre { @for id in &rules { "ninebit rule " (id) "\n" } (report.command) }
         }
         @let rows: Vec<&str> = rules.iter().filter_map(|id| super::rule(id)?.fields("Command").next()).collect();
         @if !rows.is_empty() {
