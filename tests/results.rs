@@ -111,6 +111,14 @@ impl Asked {
         command.current_dir(self.folder.path()).arg("vectors").args(arguments);
         command.output().unwrap()
     }
+
+    /// Returns the score of the results, with the exit status.
+    fn score(&self, more: &[&str]) -> (serde_json::Value, Option<i32>) {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_ninebit"));
+        let arguments = ["score", "--pack", "pack", "--results", "results", "--format", "json"];
+        let output = command.current_dir(self.folder.path()).args(arguments).args(more).output().unwrap();
+        (serde_json::from_slice(&output.stdout).unwrap_or_default(), output.status.code())
+    }
 }
 
 /// Returns the text with a last line that has its row count and checksum.
@@ -133,6 +141,36 @@ fn with_product(asked: &Asked, found: &str) {
         let row = body.lines().find(|line| line.contains("\t78\t")).unwrap();
         body.replacen(row, &row.replace("\t78\t", &format!("\t{found}\t")), 1)
     });
+}
+
+/// A card that rounds late and expands to the letter: the scorecard names both as the causes, and explains every row.
+#[test]
+fn the_scorecard_names_the_causes_of_rows() {
+    let asked = Asked::new();
+    let (right, _) = asked.score(&[]);
+    assert_eq!(right["runs"][0]["total"]["exact"], UNITS.len());
+    let mut policies = Policies::default();
+    ["CMB-3=literal", "CMB-9=after"].into_iter().for_each(|policy| policies.set(policy).unwrap());
+    asked.answer("Mesa", "llvmpipe", policies);
+    let (document, status) = asked.score(&["--at-least", "100", "-o", "report"]);
+    assert_eq!(status, Some(1));
+    let run = &document["runs"][0];
+    let causes = run["causes"]["causes"].as_array().unwrap();
+    let names: Vec<&str> =
+        causes.iter().flat_map(|c| c["shortcuts"].as_array().unwrap()).map(|s| s.as_str().unwrap()).collect();
+    assert!(names.contains(&"literal-expand") && names.contains(&"late-rounding"), "{names:?}");
+    assert!(names.iter().all(|name| ["literal-expand", "late-rounding"].contains(name)), "{names:?}");
+    assert_eq!(run["causes"]["explained_pixels"], run["causes"]["wrong_pixels"]);
+    let wrong: usize = asked.compare(&[]).units.iter().map(|unit| unit.asked - unit.exact).sum();
+    assert_eq!(run["total"]["pixels"]["wrong"], wrong);
+    assert!(run["name"].as_str().unwrap().starts_with("llvmpipe"));
+    let page = fs::read_to_string(asked.folder.path().join("report/index.html")).unwrap();
+    assert!(page.contains("a row as a pixel") && page.contains("ninebit rule CMB-9") && page.contains("late-rounding"));
+    // Results of another pack are refused.
+    let other = Asked::of(&["product"]);
+    fs::copy(other.path("product"), asked.path("product")).unwrap();
+    fs::copy(other.results().join("device.json"), asked.results().join("device.json")).unwrap();
+    assert_eq!(asked.score(&[]).1, Some(3));
 }
 
 #[test]

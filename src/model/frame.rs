@@ -41,7 +41,12 @@ impl Surface {
     /// Channels that the format does not store follow TEX-1: alpha is 255 if there is none, and red equals blue for B8
     /// and G8B8.
     pub fn rgba8(&self) -> Vec<[u8; 4]> {
-        show_all(self.format, &self.words)
+        self.rgba8_of(&self.words)
+    }
+
+    /// Returns words of the surface as [`rgba8`](Self::rgba8) does.
+    pub fn rgba8_of(&self, words: &[u32]) -> Vec<[u8; 4]> {
+        show_all(self.format, words)
     }
 }
 

@@ -66,6 +66,8 @@ impl FrameScore {
 
 /// A frame whose pixels have been compared.
 pub(crate) struct Comparison<'a> {
+    /// Width and height.
+    pub(crate) size: (u32, u32),
     pub(crate) truth: &'a [[u8; 4]],
     pub(crate) other: &'a [[u8; 4]],
     /// The wrong pixels.
@@ -99,6 +101,7 @@ pub(crate) fn differing(subject: &Subject, truth: &Rgba, other: &Rgba) -> Vec<bo
 fn compare<'a>(subject: &Subject, truth: &'a Rgba, other: &'a Rgba) -> Comparison<'a> {
     let mut wrong = outside_of_text(subject, truth.pixels().len());
     let mut right = wrong.clone();
+    let size = (truth.width(), truth.height());
     let (truth, other) = (truth.pixels(), other.pixels());
     let mut counts = Counts { compared: wrong.iter().filter(|outside| **outside).count() as u64, ..Counts::default() };
     for (at, (a, b)) in truth.iter().zip(other).enumerate() {
@@ -111,7 +114,7 @@ fn compare<'a>(subject: &Subject, truth: &'a Rgba, other: &'a Rgba) -> Compariso
             counts.far += u64::from(largest > 8);
         }
     }
-    Comparison { truth, other, wrong, right, counts }
+    Comparison { size, truth, other, wrong, right, counts }
 }
 
 /// Scores the other renderer's picture of a frame against the right one. Without `explain` nothing is drawn.

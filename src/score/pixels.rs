@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use ninebit::shortcut::Shortcuts;
+use ninebit::shortcut::{Shortcuts, Wanted};
 use ninebit_scene::image::Rgba;
 
 use crate::explain::{differing, same};
@@ -52,7 +52,7 @@ impl Sample {
 /// The causes of a frame's wrong pixels.
 #[derive(Clone, Debug)]
 pub(crate) struct CauseMap {
-    width: u32,
+    size: (u32, u32),
     /// For each pixel, `None` if it is right, otherwise the number of its cause, or `None` if it has none.
     of: Vec<Option<Option<usize>>>,
     /// Of each cause that yields pixels, how many, and the first of those that differ the most.
@@ -62,7 +62,7 @@ pub(crate) struct CauseMap {
 }
 
 /// So many pixels tell whether a variant yields any of a frame, before it is drawn for all.
-const PROBE: u64 = 256;
+const PROBE: usize = 256;
 
 impl CauseMap {
     /// Attributes each wrong pixel to the first of `variants`, which have the numbers of causes, that yields it.
@@ -72,18 +72,17 @@ impl CauseMap {
         explanation: Option<&Explanation>,
         variants: &[(usize, Shortcuts)],
     ) -> CauseMap {
-        let (wrong, width) = (differing(subject, truth, other), truth.width());
+        let (wrong, size) = (differing(subject, truth, other), (truth.width(), truth.height()));
         let of = wrong.iter().map(|wrong| wrong.then_some(None)).collect();
-        let mut map = CauseMap { width, of, found: BTreeMap::new(), open: 0 };
+        let mut map = CauseMap { size, of, found: BTreeMap::new(), open: 0 };
         let renderer = subject.drawing.as_ref().and_then(|drawing| drawing.renderer());
         let (Some(explanation), Some(renderer)) = (explanation, renderer) else { return map };
-        let mut left = wrong;
+        let mut left: Vec<usize> = (0..wrong.len()).filter(|at| wrong[*at]).collect();
         if !explanation.is_closed {
             let ours = renderer.draw(Shortcuts::NONE, None).unwrap_or_default();
-            for (at, left) in left.iter_mut().enumerate().filter(|(_, left)| **left) {
-                *left = ours.get(at).is_some_and(|pixel| same(*pixel, truth.pixels()[at]));
-                map.open += u64::from(!*left);
-            }
+            let before = left.len();
+            left.retain(|at| ours.get(*at).is_some_and(|pixel| same(*pixel, truth.pixels()[*at])));
+            map.open = (before - left.len()) as u64;
         }
         for (number, variant) in variants.iter().filter(|(_, variant)| explanation.admits(*variant)) {
             map.attribute(*number, (truth.pixels(), other.pixels()), &mut left, |mask| {
@@ -98,29 +97,29 @@ impl CauseMap {
         &mut self,
         number: usize,
         (truth, other): (&[[u8; 4]], &[[u8; 4]]),
-        left: &mut [bool],
-        draw: impl Fn(&[bool]) -> Option<Vec<[u8; 4]>>,
+        left: &mut Vec<usize>,
+        draw: impl Fn(&Wanted) -> Option<Vec<[u8; 4]>>,
     ) {
-        let count = left.iter().filter(|left| **left).count() as u64;
-        if count > 8 * PROBE {
-            let mut probe = vec![false; left.len()];
-            scattered(left, count / PROBE).into_iter().for_each(|at| probe[at] = true);
-            let drawn = draw(&probe).unwrap_or_default();
-            if !(0..drawn.len()).any(|at| probe[at] && same(drawn[at], other[at])) {
+        let drawn = |places: &[usize]| draw(&Wanted::new(self.size, places.iter().copied())).unwrap_or_default();
+        if left.len() > 8 * PROBE {
+            let probe: Vec<usize> = scattered(left.iter().copied(), (left.len() / PROBE) as u64);
+            if !probe.iter().zip(drawn(&probe)).any(|(at, drawn)| same(drawn, other[*at])) {
                 return;
             }
         }
-        if count == 0 {
+        if left.is_empty() {
             return;
         }
-        let drawn = draw(left).unwrap_or_default();
         let mut found: Option<(u64, Sample)> = None;
-        for at in 0..drawn.len() {
-            if !left[at] || !same(drawn[at], other[at]) {
+        let mut rest = Vec::new();
+        let pixels = drawn(left);
+        for (at, drawn) in std::mem::take(left).into_iter().zip(pixels) {
+            if !same(drawn, other[at]) {
+                rest.push(at);
                 continue;
             }
-            (left[at], self.of[at]) = (false, Some(Some(number)));
-            let place = (at as u32 % self.width, at as u32 / self.width);
+            self.of[at] = Some(Some(number));
+            let place = (at as u32 % self.size.0, at as u32 / self.size.0);
             let sample = Sample { at: place, truth: truth[at], other: other[at] };
             let (pixels, shown) = found.get_or_insert((0, sample));
             *pixels += 1;
@@ -128,6 +127,7 @@ impl CauseMap {
                 *shown = sample;
             }
         }
+        *left = rest;
         self.found.extend(found.map(|found| (number, found)));
     }
 
@@ -139,15 +139,21 @@ impl CauseMap {
             Some(Some(number)) => color(*number),
         };
         let opaque = |[r, g, b]: [u8; 3]| [r, g, b, 255];
-        Rgba::new(self.width, self.of.iter().map(|of| opaque(shown(of))).collect())
+        Rgba::new(self.size.0, self.of.iter().map(|of| opaque(shown(of))).collect())
     }
 }
+
+/// What a difference of one step looks like, to be seen at all.
+const FAINTEST: u8 = 64;
 
 /// Returns the difference between two pictures: each channel's, eight times, on black; areas that are not compared are black.
 pub(crate) fn difference(subject: &Subject, truth: &Rgba, other: &Rgba) -> Rgba {
     let wrong = differing(subject, truth, other);
     let shown = |((a, b), wrong): ((&[u8; 4], &[u8; 4]), &bool)| {
-        let channel = |n: usize| if *wrong { a[n].abs_diff(b[n]).saturating_mul(8) } else { 0 };
+        let channel = |n: usize| match a[n].abs_diff(b[n]) {
+            step if *wrong && step > 0 => step.saturating_mul(8).max(FAINTEST),
+            _ => 0,
+        };
         [channel(0), channel(1), channel(2), 255]
     };
     Rgba::new(truth.width(), truth.pixels().iter().zip(other.pixels()).zip(&wrong).map(shown).collect())

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use ninebit::shortcut::{Shortcut, Shortcuts};
+use ninebit::shortcut::{Shortcut, Shortcuts, Wanted};
 
 use crate::chance::Differences;
 use crate::explain::{Comparison, Counts, same};
@@ -65,10 +65,21 @@ const MOST_PAIRED: usize = 12;
 /// So many unexplained pixels of the sample are worth a search for several shortcuts.
 const LEAST_REST: usize = 64;
 
-/// Returns one of `step` pixels of a set, in a scatter that follows no pattern of pictures.
-pub(crate) fn scattered(set: &[bool], step: u64) -> Vec<usize> {
+/// So many unexplained pixels of the sample have to be moved by each of two shortcuts before they are tried together.
+const LEAST_SHARED: usize = 16;
+
+/// Where one in so many pixels of the sample is left, shortcuts are tried beside others that move no pixel alone.
+const MUCH: usize = 4;
+
+/// Returns one of `step` places, in a scatter that follows no pattern of pictures.
+pub(crate) fn scattered(places: impl Iterator<Item = usize>, step: u64) -> Vec<usize> {
     let is_taken = |at: &usize| ((*at as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32).is_multiple_of(step);
-    (0..set.len()).filter(|at| set[*at] && is_taken(at)).collect()
+    places.filter(is_taken).collect()
+}
+
+/// Returns the places of a set.
+fn places(set: &[bool]) -> impl Iterator<Item = usize> {
+    (0..set.len()).filter(|at| set[*at])
 }
 
 /// Returns what variants yield, or `None` if the model does not draw the frame.
@@ -79,16 +90,19 @@ pub(crate) fn explanation(subject: &Subject, compared: &Comparison<'_>) -> Optio
         return None;
     }
     let weight = compared.counts.wrong.div_ceil(MOST_WRONG).max(1);
-    let wrong = scattered(&compared.wrong, weight);
+    let wrong = scattered(places(&compared.wrong), weight);
     let yields = |at: usize| same(ours[at], compared.truth[at]);
     let signatures = wrong.iter().map(|at| if yields(*at) { 0 } else { OPEN }).collect();
-    let right = scattered(&compared.right, LATTICE);
+    let right = scattered(places(&compared.right), LATTICE);
     let is_closed = (0..ours.len()).all(|at| !compared.wrong[at] || yields(at));
     let explanation = Explanation { is_closed, ..Explanation::default() };
-    let mut search = Search { renderer: &*renderer, compared, weight, wrong, right, signatures, explanation };
+    let (moved, nearer) = (HashMap::new(), Vec::new());
+    let mut search =
+        Search { renderer: &*renderer, compared, weight, wrong, right, signatures, moved, nearer, explanation };
+    let concerning: Vec<Shortcut> = renderer.shortcuts().iter().collect();
     // Every shortcut alone is drawn at all pixels of the sample: one that turns out to be chance must hide none.
     let mut moving = Vec::new();
-    for shortcut in renderer.shortcuts().iter() {
+    for shortcut in concerning.iter().copied() {
         let alone = Shortcuts::NONE.with(shortcut);
         let moves = search.draw(alone, Scope::All);
         // The parts of a shader are tried with others if they explain much, and as a whole in any case.
@@ -99,7 +113,7 @@ pub(crate) fn explanation(subject: &Subject, compared: &Comparison<'_>) -> Optio
         }
     }
     search.pair(&moving);
-    search.grow(&moving);
+    search.grow(&moving, &concerning);
     Some(search.finish())
 }
 
@@ -114,7 +128,16 @@ struct Search<'a> {
     right: Vec<usize>,
     /// The signature of each of the wrong pixels.
     signatures: Vec<u128>,
+    /// For each shortcut alone, which of the wrong pixels it changes.
+    moved: HashMap<Shortcut, Vec<bool>>,
+    /// For each variant, of how many more pixels that it was drawn for it comes nearer to the other's than it goes away from them.
+    nearer: Vec<i64>,
     explanation: Explanation,
+}
+
+/// Returns the sum of the differences of R, G and B.
+fn distance(a: [u8; 4], b: [u8; 4]) -> u16 {
+    (0..3).map(|n| u16::from(a[n].abs_diff(b[n]))).sum()
 }
 
 /// The pixels of the sample that a variant is drawn for.
@@ -138,27 +161,33 @@ impl Search<'_> {
         if wanted.is_empty() {
             return false;
         }
-        let mut mask = vec![false; self.compared.truth.len()];
-        wanted.iter().for_each(|n| mask[self.wrong[*n]] = true);
-        self.right.iter().for_each(|at| mask[*at] = true);
+        let mut places: Vec<usize> = wanted.iter().map(|n| self.wrong[*n]).chain(self.right.iter().copied()).collect();
+        places.sort_unstable();
+        let mask = Wanted::new(self.compared.size, places.iter().copied());
         let Some(drawn) = self.renderer.draw(variant, Some(&mask)) else { return false };
         let (truth, other) = (self.compared.truth, self.compared.other);
         let mut predicted = Differences::default();
-        let mut moves = false;
-        for n in wanted {
-            let at = self.wrong[n];
-            if !same(drawn[at], truth[at]) {
-                moves = true;
-                predicted.add(truth[at], drawn[at], self.weight);
-                if same(drawn[at], other[at]) {
-                    self.signatures[n] |= 1 << number;
-                }
+        let (mut moved, mut nearer) = (vec![false; self.wrong.len()], 0);
+        let mut wanted = wanted.into_iter().peekable();
+        for (at, drawn) in places.into_iter().zip(drawn) {
+            let of_wrong = wanted.next_if(|n| self.wrong[*n] == at);
+            if same(drawn, truth[at]) {
+                continue;
+            }
+            predicted.add(truth[at], drawn, if of_wrong.is_some() { self.weight } else { LATTICE });
+            let Some(n) = of_wrong else { continue };
+            moved[n] = true;
+            nearer += (distance(other[at], truth[at]).cmp(&distance(other[at], drawn))) as i64;
+            if same(drawn, other[at]) {
+                self.signatures[n] |= 1 << number;
             }
         }
-        for at in self.right.iter().filter(|at| !same(drawn[**at], truth[**at])) {
-            predicted.add(truth[*at], drawn[*at], LATTICE);
+        let moves = moved.contains(&true);
+        if let (1, Some(shortcut)) = (variant.iter().count(), variant.iter().next()) {
+            self.moved.insert(shortcut, moved);
         }
         if moves {
+            self.nearer.push(nearer);
             self.explanation.variants.push(variant);
             self.explanation.predicted.push(predicted);
         }
@@ -183,18 +212,42 @@ impl Search<'_> {
             if self.rest() < LEAST_REST {
                 return;
             }
-            self.draw([moving[first], moving[second]].into_iter().collect(), Scope::Unexplained);
+            let both = [moving[first], moving[second]];
+            if self.can_gain(&both) {
+                self.draw(both.into_iter().collect(), Scope::Unexplained);
+            }
         }
     }
 
-    /// Looks for sets of shortcuts that explain what one or two do not. Each begins with one of those that explain the most.
-    fn grow(&mut self, moving: &[Shortcut]) {
+    /// Returns whether there are unexplained pixels that each of the shortcuts changes alone. Beside those that show only in company others may
+    /// change more.
+    fn can_gain(&self, shortcuts: &[Shortcut]) -> bool {
+        if shortcuts.iter().any(|shortcut| IN_COMPANY.contains(shortcut)) {
+            return true;
+        }
+        let moves = |shortcut: &Shortcut, n: usize| self.moved.get(shortcut).is_some_and(|moved| moved[n]);
+        let is_open = |n: &usize| self.signatures[*n] == 0 && shortcuts.iter().all(|shortcut| moves(shortcut, *n));
+        (0..self.wrong.len()).filter(is_open).nth(LEAST_SHARED - 1).is_some()
+    }
+
+    /// Looks for sets of shortcuts that explain what one or two do not. Each begins with one of those that explain the most, and if much is
+    /// left with that which brings the most pixels nearer.
+    fn grow(&mut self, moving: &[Shortcut], concerning: &[Shortcut]) {
         let is_known = |variant: &Shortcuts| variant.iter().all(|shortcut| moving.contains(&shortcut));
-        let mut starts = self.explanation.variants.clone();
-        starts.retain(is_known);
+        let all = self.explanation.variants.clone();
+        let mut starts: Vec<Shortcuts> = all.iter().copied().filter(is_known).collect();
         starts.sort_by_key(|variant| std::cmp::Reverse(self.hits(*variant)));
-        for start in starts.into_iter().take(STARTS) {
-            self.extend(start, moving);
+        starts.truncate(STARTS);
+        for start in starts {
+            let is_in_company = start.iter().any(|shortcut| IN_COMPANY.contains(&shortcut));
+            let can_gain = |shortcut: &Shortcut| is_in_company || self.can_gain(&[*shortcut]);
+            let candidates: Vec<Shortcut> = moving.iter().copied().filter(can_gain).collect();
+            self.extend(start, &candidates);
+        }
+        if self.rest() * MUCH > self.wrong.len()
+            && let Some(nearest) = (0..all.len()).max_by_key(|n| self.nearer[*n]).filter(|n| self.nearer[*n] > 0)
+        {
+            self.extend(all[nearest], concerning);
         }
     }
 

@@ -24,8 +24,8 @@ pub struct Exhibit {
     pub file: String,
     /// The chip's picture, the other renderer's, the difference, and the causes.
     pub pictures: [(&'static str, Rgba); 4],
-    /// The scene, if it is what the model draws of the frame, with the cause of the most pixels and its drawing.
-    pub scene: Option<(Scene, usize, Rgba)>,
+    /// The scene, if it is what the model draws of the frame, with the cause of the most pixels.
+    pub scene: Option<(Scene, usize)>,
 }
 
 /// A pixel that shows a cause.
@@ -67,7 +67,7 @@ pub fn exhibits(run: &Run, subjects: &[Subject], pictures: &Pictures, most: usiz
     wanted.extend(worst);
     wanted.truncate(most);
     let variants = causes.narrow_first();
-    let shown = |frame| exhibit(frame, run, &subjects[frame], pictures, &variants);
+    let shown = |frame: usize| exhibit(frame, run, subjects.get(frame)?, pictures, &variants);
     wanted.into_par_iter().filter_map(shown).collect()
 }
 
@@ -85,24 +85,16 @@ fn exhibit(
     let difference = difference(subject, &truth, &other);
     let file = format!("{}-{}", scored.suite, scored.name).replace(|c: char| !c.is_ascii_alphanumeric(), "_");
     let pictures = [("chip", truth), ("other", other), ("difference", difference), ("causes", map.picture(color))];
-    Some(Exhibit {
-        frame,
-        file: format!("{frame:04}-{file}"),
-        pictures,
-        scene: scene(subject, &run.frames[frame], variants),
-    })
+    Some(Exhibit { frame, file: format!("{frame:04}-{file}"), pictures, scene: scene(subject, scored) })
 }
 
-/// Returns the scene of a frame with the cause of the most of its pixels, and the picture of that.
-fn scene(subject: &Subject, frame: &FrameScore, variants: &[(usize, Shortcuts)]) -> Option<(Scene, usize, Rgba)> {
+/// Returns the scene of a frame with the cause of the most of its pixels.
+fn scene(subject: &Subject, frame: &FrameScore) -> Option<(Scene, usize)> {
     let (drawing, best) = (subject.drawing.as_ref()?, frame.attributed.iter().max_by_key(|(_, pixels)| *pixels)?.0);
-    let variant = variants.iter().find(|(number, _)| *number == best)?.1;
-    let (scene, renderer) = (drawing.scene()?, drawing.renderer()?);
-    let width = scene.targets.first()?.width;
+    let scene = drawing.scene()?;
     let alone = scene.renderer()?.draw(Shortcuts::NONE, None)?;
     // A frame that shows depths is no picture of its scene.
-    let is_shown = renderer.draw(Shortcuts::NONE, None)? == alone;
-    is_shown.then_some((scene, best, Rgba::new(width, renderer.draw(variant, None)?)))
+    (drawing.renderer()?.draw(Shortcuts::NONE, None)? == alone).then_some((scene, best))
 }
 
 /// Returns for each cause a pixel that shows it, traced twice.
@@ -122,10 +114,8 @@ pub fn evidence(run: &Run, subjects: &[Subject]) -> Vec<Option<Evidence>> {
 fn traced(subject: &Subject, variant: Shortcuts, pixel: (u32, u32)) -> Option<Vec<SideBySideLine>> {
     let scene = subject.drawing.as_ref()?.scene()?;
     let plan = Plan::compile(&scene, &PlanOptions::default()).ok()?;
-    let of = |shortcuts: Shortcuts| {
-        shortcut::trace(&plan.clone().with_shortcuts(shortcuts), shortcuts, pixel, FRAGMENTS).ok()
-    };
-    let (rules, other) = (ninebit::engine::trace_last(&plan, 0, pixel, None, FRAGMENTS).ok()?, of(variant)?);
+    let rules = ninebit::engine::trace_last(&plan, 0, pixel, None, FRAGMENTS).ok()?;
+    let other = shortcut::trace(&plan, variant, 0, pixel, FRAGMENTS).ok()?;
     let mut lines = side_by_side(&rules, &other);
     lines.retain(SideBySideLine::differs);
     lines.truncate(MOST_LINES);

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use ninebit::engine::{RenderOptions, cleared};
+use ninebit::engine::RenderOptions;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::shortcut::{self, Mask, Shortcuts};
 use ninebit::state::{Policies, Rectangle, Scene};
@@ -18,8 +18,8 @@ pub trait Drawing: Send + Sync {
 
 /// What draws a frame, several times.
 pub trait Renderer {
-    /// Returns R, G, B, A of every pixel as a renderer with shortcuts draws them, or `None` if the scene cannot be planned. Pixels outside
-    /// of the mask may be left undrawn.
+    /// Returns R, G, B, A of every pixel, or of those of the mask in their order, as a renderer with shortcuts draws them; `None` if the scene
+    /// cannot be planned.
     fn draw(&self, shortcuts: Shortcuts, mask: Mask<'_>) -> Option<Vec<[u8; 4]>>;
     /// Returns the shortcuts that can change the frame.
     fn shortcuts(&self) -> Shortcuts;
@@ -102,10 +102,9 @@ impl Drawing for Scene {
 
 impl Renderer for Plan {
     fn draw(&self, shortcuts: Shortcuts, mask: Mask<'_>) -> Option<Vec<[u8; 4]>> {
-        let plan = self.clone().with_shortcuts(shortcuts);
-        let mut frames = cleared(&plan);
-        shortcut::render(&plan, shortcuts, &RenderOptions::default(), &mut frames, mask);
-        frames.surfaces.first().map(ninebit::frame::Surface::rgba8)
+        let frames = shortcut::drawn(self, shortcuts, &RenderOptions::default(), mask);
+        let surface = frames.surfaces.first()?;
+        Some(mask.map_or_else(|| surface.rgba8(), |wanted| surface.rgba8_of(&wanted.of(&surface.words))))
     }
     fn shortcuts(&self) -> Shortcuts {
         shortcut::concerning(self)

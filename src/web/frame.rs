@@ -1,7 +1,8 @@
 //! Pictures and their differences.
 
-use ninebit::engine::{RenderOptions, render};
+use ninebit::engine::RenderOptions;
 use ninebit::plan::{Plan, PlanOptions};
+use ninebit::shortcut::{self, Shortcuts};
 use ninebit::state::{Policies, Scene};
 use ninebit_files::picture::digest;
 use ninebit_report::compare::{ALL_CHANNELS, CompareOptions, Mode, compare, heat_classes, heat_color};
@@ -24,8 +25,8 @@ pub(crate) fn stepped(scene: &Scene, until: usize, policies: Policies) -> Result
 }
 
 /// Draws a target. The picture holds its colours or, with `depth`, the words of its depth buffer: depth with the lowest byte first, then the stencil.
-pub(crate) fn draw(plan: &Plan, target: usize, depth: bool) -> Result<ShownFrame, Refused> {
-    let frames = render(plan, &RenderOptions::default());
+pub(crate) fn draw(plan: &Plan, shortcuts: Shortcuts, target: usize, depth: bool) -> Result<ShownFrame, Refused> {
+    let frames = shortcut::drawn(plan, shortcuts, &RenderOptions::default(), None);
     let surface = &frames.surfaces[target];
     let (width, height) = (surface.width, surface.height);
     if !depth {
@@ -43,8 +44,9 @@ pub(crate) fn draw(plan: &Plan, target: usize, depth: bool) -> Result<ShownFrame
     Ok((json!({ "width": width, "height": height, "low": low, "high": high }), pixels.collect()))
 }
 
-fn picture(plan: &Plan, target: usize) -> Rgba {
-    let frames = render(plan, &RenderOptions::default());
+/// Draws a target.
+pub(crate) fn picture(plan: &Plan, shortcuts: Shortcuts, target: usize) -> Rgba {
+    let frames = shortcut::drawn(plan, shortcuts, &RenderOptions::default(), None);
     let surface = &frames.surfaces[target];
     Rgba::new(surface.width, surface.rgba8())
 }
@@ -66,20 +68,13 @@ pub(crate) fn against_ideal(plan: &Plan, target: usize) -> ShownFrame {
     (answer, found.heat())
 }
 
-/// Compares the definition with itself under other policies.
-pub(crate) fn against_policies(plan: &Plan, target: usize, policies: Policies) -> Result<ShownFrame, Refused> {
-    let other = plan.clone().under(policies);
-    between(&picture(plan, target), &picture(&other, target), false)
-}
-
-/// Compares the definition with a picture from elsewhere. Alpha is ignored, because that of screenshots has no meaning.
-pub(crate) fn against_picture(plan: &Plan, target: usize, second: Option<&Rgba>) -> Result<ShownFrame, Refused> {
-    let second = second.ok_or("there is no second picture")?;
-    between(&picture(plan, target), second, true)
+/// Compares a picture with one from elsewhere. Alpha is ignored, because that of screenshots has no meaning.
+pub(crate) fn against_picture(this: &Rgba, second: Option<&Rgba>) -> Result<ShownFrame, Refused> {
+    between(this, second.ok_or("there is no second picture")?, true)
 }
 
 /// Compares two pictures. The resulting picture shows the largest difference of each pixel's channels.
-fn between(a: &Rgba, b: &Rgba, ignore_alpha: bool) -> Result<ShownFrame, Refused> {
+pub(crate) fn between(a: &Rgba, b: &Rgba, ignore_alpha: bool) -> Result<ShownFrame, Refused> {
     let options = Options { ignore_alpha, regions: 50 };
     let found = diff::compare(a, b, &options).map_err(|error| error.to_string())?;
     let regions = found.regions.iter().map(|region| {

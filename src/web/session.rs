@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use ninebit::diagnostic::{Diagnostic, Severity, Source};
-use ninebit::engine::{PlaneOptions, plane_names, trace};
+use ninebit::engine::{FRAGMENTS, PixelTrace, PlaneOptions, plane_names, trace};
 use ninebit::limits::Limits;
 use ninebit::plan::Plan;
+use ninebit::shortcut::{self, Shortcuts};
 use ninebit::state::{Draw, Named, POLICIES, Policies, Rectangle, Scene};
 use ninebit_report::planes::{PlanesError, plane_arrays};
 use ninebit_report::trace_value;
@@ -24,10 +25,10 @@ use crate::{Refused, frame, program, shader, tree};
 /// |---|---|---|
 /// | `file` | `name`; the file's bytes | nothing; scenes may name the file from now on |
 /// | `open` | `text`, `name` | `scene`: its targets, draws and textures; `findings`. A scene with errors leaves the one before in place |
-/// | `policies` | `values`: rule to value | nothing; they hold from now on |
+/// | `policies` | `values`: rule to value; perhaps `shortcuts`: names of docs/evidence/shortcuts.md, joined by `+` | nothing; they hold from now on |
 /// | `draw` | `target` | `width`, `height`, `digest`, and the picture |
 /// | `depth` | `target` | `width`, `height`, the `low`est and `high`est depth, and as picture the words: 24 bits of depth, the lowest byte first, and the stencil |
-/// | `heat` | `target`, `against`: `ideal`, `picture`, or an object as `values` | `differing`, `regions`, and the picture |
+/// | `heat` | `target`, `against`: `ideal`, `picture`, `rules` (no shortcuts), or an object as `values` | `differing`, `regions`, and the picture |
 /// | `picture` | `name`; the file's bytes, PNG or TGA, or `width`, `height` and R, G, B, A of each pixel | `width`, `height`, and the picture; `heat` compares with it |
 /// | `trace` | `target`, `pixel` | `trace`: the document of docs/trace-format.md |
 /// | `planes` | `target`, `names`, `rectangle` (first column and row, columns, rows) | `width`, `height`, `planes`: of each step `name`, `step`, `kind` (`int32` or `uint32`) and `per_one`; and as picture their values, plane after plane, each the four bytes of a little-endian word |
@@ -46,6 +47,8 @@ pub struct Session {
     text: String,
     loaded: Option<(Scene, Plan)>,
     policies: Policies,
+    /// What draws and traces take in place of rules.
+    shortcuts: Shortcuts,
     /// The plan up to a draw, kept for requests with the same `until`.
     stepped: Option<(usize, Plan)>,
     second: Option<Rgba>,
@@ -79,7 +82,8 @@ impl Session {
             }
             "open" => Ok(self.open(text("text")?, text("name")?)),
             "policies" => {
-                self.policies = policies(&request["values"])?;
+                let chosen = shortcuts(&request["shortcuts"])?;
+                (self.policies, self.shortcuts) = (policies(&request["values"])?, chosen);
                 let (loaded, stepped) = (self.loaded.iter_mut(), self.stepped.iter_mut());
                 for plan in loaded.map(|(_, plan)| plan).chain(stepped.map(|(_, plan)| plan)) {
                     plan.policies = self.policies;
@@ -100,7 +104,9 @@ impl Session {
             "outline" => Ok(json!({ "tree": tree::value(&self.text) })),
             what @ ("draw" | "depth") => {
                 let target = self.target(number("target")?)?;
-                let (answer, picture) = frame::draw(self.plan(number("until").ok())?, target, what == "depth")?;
+                let shortcuts = self.shortcuts;
+                let plan = self.plan(number("until").ok())?;
+                let (answer, picture) = frame::draw(plan, shortcuts, target, what == "depth")?;
                 self.picture = picture;
                 Ok(answer)
             }
@@ -108,19 +114,27 @@ impl Session {
                 let (target, against) = (self.target(number("target")?)?, &request["against"]);
                 self.step(number("until").ok())?;
                 let plan = self.shown(number("until").ok())?;
+                if against.as_str() == Some("ideal") && !self.shortcuts.is_empty() {
+                    return Err("float64 is compared with the chip's rules, without shortcuts".to_owned());
+                }
+                let this = || frame::picture(plan, self.shortcuts, target);
                 let (answer, picture) = match against.as_str() {
                     Some("ideal") => frame::against_ideal(plan, target),
-                    Some(_) => frame::against_picture(plan, target, self.second.as_ref())?,
-                    None => frame::against_policies(plan, target, policies(against)?)?,
+                    Some("rules") => frame::between(&this(), &frame::picture(plan, Shortcuts::NONE, target), false)?,
+                    Some(_) => frame::against_picture(&this(), self.second.as_ref())?,
+                    None => {
+                        let other = plan.clone().under(policies(against)?);
+                        frame::between(&this(), &frame::picture(&other, self.shortcuts, target), false)?
+                    }
                 };
                 self.picture = picture;
                 Ok(answer)
             }
             "trace" => {
                 let (target, pixel) = (self.target(number("target")?)?, pixel(request)?);
+                let shortcuts = self.shortcuts;
                 let plan = self.plan(number("until").ok())?;
-                let trace = trace(plan, target, pixel, None).map_err(|error| error.to_string())?;
-                Ok(json!({ "trace": trace_value(plan, &trace) }))
+                Ok(json!({ "trace": trace_value(plan, &traced(plan, shortcuts, target, pixel)?) }))
             }
             "planes" => {
                 let target = self.target(number("target")?)?;
@@ -137,7 +151,8 @@ impl Session {
             }
             "alternatives" => {
                 let (target, pixel) = (self.target(number("target")?)?, pixel(request)?);
-                alternatives(self.plan(number("until").ok())?, target, pixel)
+                let shortcuts = self.shortcuts;
+                alternatives(self.plan(number("until").ok())?, shortcuts, target, pixel)
             }
             "program" => {
                 let (scene, _) = self.loaded()?;
@@ -249,6 +264,23 @@ fn policies(values: &Value) -> Result<Policies, Refused> {
     Ok(policies)
 }
 
+/// Reads the names of shortcuts. There are none by default.
+fn shortcuts(names: &Value) -> Result<Shortcuts, Refused> {
+    match names.as_str().unwrap_or_default() {
+        "" => Ok(Shortcuts::NONE),
+        names => Shortcuts::from_names(names).map_err(|name| format!("there is no shortcut `{name:.60}`")),
+    }
+}
+
+/// Traces a pixel as the rules have it, or a renderer with shortcuts.
+fn traced(plan: &Plan, shortcuts: Shortcuts, target: usize, pixel: (u32, u32)) -> Result<PixelTrace, Refused> {
+    let traced = match shortcuts.is_empty() {
+        true => trace(plan, target, pixel, None),
+        false => shortcut::trace(plan, shortcuts, target, pixel, FRAGMENTS),
+    };
+    traced.map_err(|error| error.to_string())
+}
+
 fn pixel(request: &Value) -> Result<(u32, u32), Refused> {
     let at = |n: usize| request["pixel"][n].as_u64().and_then(|n| u32::try_from(n).ok());
     at(0).zip(at(1)).ok_or_else(|| "`pixel` is not two numbers".to_owned())
@@ -356,7 +388,7 @@ fn described(scene: &Scene) -> Value {
 }
 
 /// Returns the pixel under each value of each rule with alternatives; the other rules keep their values.
-fn alternatives(plan: &Plan, target: usize, pixel: (u32, u32)) -> Result<Value, Refused> {
+fn alternatives(plan: &Plan, shortcuts: Shortcuts, target: usize, pixel: (u32, u32)) -> Result<Value, Refused> {
     let mut other = plan.clone();
     let mut rules = Vec::new();
     for policy in POLICIES {
@@ -364,7 +396,7 @@ fn alternatives(plan: &Plan, target: usize, pixel: (u32, u32)) -> Result<Value, 
         for (index, (value, meaning)) in policy.values.iter().enumerate() {
             other.policies = plan.policies;
             other.policies.choose(policy.rule, index);
-            let found = trace(&other, target, pixel, None).map_err(|error| error.to_string())?;
+            let found = traced(&other, shortcuts, target, pixel)?;
             values.push(json!({
                 "value": value, "meaning": meaning, "chosen": index == plan.policies.chosen(policy.rule),
                 "shown": found.shown, "word": format!("{:#010x}", found.word),

@@ -15,6 +15,7 @@ use ninebit::engine::{RenderOptions, render, trace};
 use ninebit::frame::Surface;
 use ninebit::limits::Limits;
 use ninebit::plan::Plan;
+use ninebit::shortcut::{self, Shortcuts};
 use ninebit::state::{Named, Policies};
 use ninebit_files::output::{Compression, encode_png};
 use ninebit_files::picture::surface_digest;
@@ -44,6 +45,7 @@ fn main() {
         Trial::test("the_report_works_in_a_browser", report).with_ignored_flag(!browser),
         Trial::test("pages_meet_level_aa", accessible).with_ignored_flag(!browser || !Path::new(AXE).exists()),
         Trial::test("requests_that_make_no_sense_are_refused", refused),
+        Trial::test("shortcuts_draw_as_the_library_does", shortcuts),
         Trial::test("places_count_as_scripts_do", places),
         Trial::test("every_part_of_a_program_can_be_changed", edits),
         Trial::test("programs_of_every_language_can_be_changed", languages),
@@ -254,6 +256,34 @@ fn findings() -> Result<(), Failed> {
     Ok(())
 }
 
+/// A scene, a shortcut, the digest of the picture with it, and how many pixels it changes.
+const VARIANT: (&str, &str) = ("vectors/scenes/fog/modes.ron", "float-fog");
+
+/// Returns the digest of a scene under shortcuts, and the stored word of a pixel.
+fn varied(path: &Path, shortcuts: &str, pixel: (u32, u32)) -> (String, u32) {
+    let (plan, shortcuts) = (load(path).unwrap().0.plan, Shortcuts::from_names(shortcuts).unwrap());
+    let frames = shortcut::drawn(&plan, shortcuts, &RenderOptions::default(), None);
+    let traced = shortcut::trace(&plan, shortcuts, 0, pixel, 8).unwrap();
+    (surface_digest(&frames.surfaces[0]), traced.word)
+}
+
+fn shortcuts() -> Result<(), Failed> {
+    let (path, names) = (Path::new(VARIANT.0), VARIANT.1);
+    let mut native = Native::from_path(path);
+    let rules = native.digest(None);
+    native.ask(json!({ "do": "policies", "values": {}, "shortcuts": names }));
+    let heat = native.ask(json!({ "do": "heat", "target": 0, "until": null, "against": "rules" }));
+    let first = &heat["regions"][0]["first"];
+    let pixel = [0, 1].map(|n| u32::try_from(first[n].as_u64().unwrap()).unwrap());
+    let traced = native.ask(json!({ "do": "trace", "target": 0, "pixel": pixel, "until": null }));
+    let (digest, word) = varied(path, names, pixel.into());
+    assert_eq!((native.digest(None), &traced["trace"]["word"]), (digest.clone(), &json!(word)));
+    assert_ne!(digest, rules);
+    native.ask(json!({ "do": "policies", "values": {} }));
+    assert_eq!(native.digest(None), rules);
+    Ok(())
+}
+
 fn refused() -> Result<(), Failed> {
     let mut native = Native::default();
     let mut ask =
@@ -273,6 +303,7 @@ fn refused() -> Result<(), Failed> {
         r#"{"do":"depth","target":0}"#,
         r#"{"do":"heat","target":0,"against":{"CMB-3":"neither"}}"#,
         r#"{"do":"policies","values":{"NUM":"x"}}"#,
+        r#"{"do":"policies","values":{},"shortcuts":"mist"}"#,
         r#"{"do":"program","draw":99}"#,
         r#"{"do":"edit","draw":0,"path":["stages",99,"rgb","scale"],"value":"Two"}"#,
         r#"{"do":"edit","draw":0,"path":["stages",0,"rgb","scale"],"value":"Nine"}"#,
@@ -389,8 +420,13 @@ fn languages() -> Result<(), Failed> {
 }
 
 fn inspect(scene: &Path, page: &Path) {
+    inspect_with(&[], scene, page);
+}
+
+fn inspect_with(options: &[&str], scene: &Path, page: &Path) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_ninebit"));
     let Output { status, stderr, .. } =
-        Command::new(env!("CARGO_BIN_EXE_ninebit")).arg("inspect").arg(scene).arg("-o").arg(page).output().unwrap();
+        command.arg("inspect").args(options).arg(scene).arg("-o").arg(page).output().unwrap();
     assert!(status.success(), "{}", String::from_utf8_lossy(&stderr));
 }
 
@@ -598,6 +634,10 @@ fn page(browser: &str) -> Result<(), Failed> {
         })
         .to_vec();
     inspect(Path::new("vectors/scenes/texture-shader/mirror-ball.ron"), &at("mirror-ball.html"));
+    inspect_with(&["--shortcuts", VARIANT.1], Path::new(VARIANT.0), &at("variant.html"));
+    let path_of_variant = Path::new(VARIANT.0);
+    let by_rules = digests(&load(path_of_variant).unwrap().0.plan)[0].clone();
+    let variant = [varied(path_of_variant, VARIANT.1, (0, 0)).0, by_rules];
     // One change after another.
     let mut twice = Native::from_path(Path::new("vectors/scenes/programs/dot3-texture-stages.ron"));
     let (_, once) = twice.edited(json!(["stages", 0, "rgb", "scale"]), "Two");
@@ -610,7 +650,7 @@ fn page(browser: &str) -> Result<(), Failed> {
     let texture = format!("scene/textures/{}", loaded.plan.textures()[0].name);
     let shown = traced.shown.map(|byte| byte.to_string()).join(", ");
     let expected = json!({
-        "digest": digests(&loaded.plan)[0], "pixel": pixel, "word": traced.word, "shown": shown,
+        "variant": variant, "digest": digests(&loaded.plan)[0], "pixel": pixel, "word": traced.word, "shown": shown,
         "ideal": ideal, "undecided": undecided, "readings": readings, "against_literal": against_literal, "steps": steps, "rewritten": rewritten, "words": words,
         "lowered": { "glsl": lowered("glsl"), "c99": lowered("c99") },
         "pasted": native.digest(None), "texture": texture, "edited": edited, "text": text, "literal": digests(&literal)[0],

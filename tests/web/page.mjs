@@ -316,6 +316,19 @@ async function tests() {
   await only(beside, address("gallery/inspector.js"));
 
   // The coordinate r of a texture shader is no red of a register.
+  // A page that begins with a renderer's shortcut: the picture is as the renderer draws it, or by the rules, and the address says which.
+  await opened("variant.html");
+  assert.equal(await digest(), expected.variant[0]);
+  const choose = (id, value) => browser.value(`(() => { const field = document.getElementById("${id}"); field.value = ${JSON.stringify(value)}; field.dispatchEvent(new Event("change")); return field.value; })()`);
+  assert.equal(await choose("against", "rules"), "rules");
+  assert.ok(/^[1-9]\d* pixels differ/.test(await text("regions-sum")), await text("regions-sum"));
+  await choose("variant", "");
+  assert.equal(await digest(), expected.variant[1]);
+  const byRules = await browser.value("inspector.address.write().then(() => location.href)");
+  await opened("", { url: byRules });
+  assert.equal(await digest(), expected.variant[1], "the address does not say by what the picture is drawn");
+  await sound("variant.html");
+
   await opened("mirror-ball.html");
   await browser.value(`(() => { inspector.choose([128, 128]); inspector.chain.fill(); })()`);
   const boxes = await browser.value(`[...document.querySelectorAll("#chain .box")].map((box) => [box.querySelector(".name").textContent, box.querySelector(".how").textContent])`);

@@ -6,7 +6,8 @@ use std::collections::BTreeMap;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use ninebit::engine::render;
-use ninebit::state::POLICIES;
+use ninebit::shortcut::{Shortcut, Shortcuts};
+use ninebit::state::{Named, POLICIES};
 use ninebit_scene::assets::Gathered;
 use ninebit_scene::{Heading, Loaded};
 use serde_json::Value;
@@ -23,8 +24,17 @@ pub(crate) struct Arguments {
     output: Destination,
     #[command(flatten)]
     state: StateArguments,
+    /// Begin with the picture as a renderer draws it that takes these shortcuts: `float-fog+vertex-fog`
+    #[arg(long, value_name = "NAMES", value_parser = shortcuts)]
+    shortcuts: Option<Shortcuts>,
     #[command(flatten)]
     work: WorkArguments,
+}
+
+/// Parses names of shortcuts.
+fn shortcuts(names: &str) -> Result<Shortcuts, String> {
+    let known = || Shortcut::ALL.iter().map(|shortcut| shortcut.name()).collect::<Vec<_>>().join(", ");
+    Shortcuts::from_names(names).map_err(|name| format!("`{}` is not one of {}", shown::name(name), known()))
 }
 
 /// Writes a page that shows the scene and computes it in the browser.
@@ -39,10 +49,12 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         Some(name) if arguments.scene != Path::new("-") => shown::path(Path::new(name)),
         _ => "scene.ron".to_owned(),
     };
-    // Policies may draw another picture than the one that is shown before the module is compiled.
-    let picture = if policies == loaded.plan.policies { first_picture(&loaded.plan) } else { None };
+    // Policies and shortcuts may draw another picture than the one that is shown before the module is compiled.
+    let is_default = policies == loaded.plan.policies && arguments.shortcuts.is_none();
+    let picture = if is_default { first_picture(&loaded.plan) } else { None };
     let mut data = scene_data(&name, loaded, gathered, picture.as_ref())?;
     data["chosen"] = chosen(&policies);
+    data["variant"] = arguments.shortcuts.map(Shortcuts::names).into();
     Ok(arguments.output.write(page::page(&name, &data, &common()).as_bytes())?)
 }
 

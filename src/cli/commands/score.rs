@@ -18,13 +18,14 @@ use ninebit_files::pending::PendingFolder;
 use ninebit_handbook::{RULES, Rule};
 use ninebit_scene::image::Rgba;
 use ninebit_scene::write::{self, WriteOptions};
-use ninebit_score::{Exhibit, Pictures, Run, Subject, captured, find, of_scene};
+use ninebit_score::{Exhibit, Pictures, Run, Subject, captured, find, of_answers, of_scene};
+use ninebit_vectors::{pack, results};
 use serde_json::json;
 
 use crate::replay::EntryKind;
 
 #[derive(Debug, Args)]
-#[command(group(clap::ArgGroup::new("against").required(true).args(["captures", "scenes"])))]
+#[command(group(clap::ArgGroup::new("against").required(true).args(["captures", "scenes", "pack"])))]
 pub(crate) struct Arguments {
     /// The folder `results` of the captures: the chip's pictures, SUITE/FRAME.png
     #[arg(long, value_name = "DIR")]
@@ -32,6 +33,9 @@ pub(crate) struct Arguments {
     /// A folder of scenes in place of the captures; what the model draws counts as right
     #[arg(long, value_name = "DIR")]
     scenes: Option<PathBuf>,
+    /// A pack of vectors in place of the captures; results are folders that `ninebit-gl` wrote, a unit counts as a frame and a row as a pixel
+    #[arg(long, value_name = "PACK")]
+    pack: Option<PathBuf>,
     /// A folder of another renderer's pictures, SUITE/FRAME.png at any depth, or beside `--scenes` PATH/SCENE.png; may be given several times: the last folder is explained, those before are its history
     #[arg(long, value_name = "DIR", required = true)]
     results: Vec<PathBuf>,
@@ -61,6 +65,9 @@ const DOCUMENT: &str = "score.json";
 /// The file that the inspector's pages of a report share.
 const SHARED: &str = "inspector.js";
 
+/// The name of the renderer's picture in the inspector.
+const OTHER: &str = "the renderer's.png";
+
 /// Most frames with pictures.
 const MOST_EXHIBITS: usize = 40;
 
@@ -72,11 +79,16 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let report = arguments.output.as_deref().map(folder).transpose()?;
     let (subjects, sets) = match (&arguments.captures, &arguments.scenes) {
         (Some(captures), _) => of_captures(captures, arguments)?,
-        (None, scenes) => of_scenes(scenes.as_deref().unwrap_or(Path::new(".")), arguments)?,
+        (_, Some(scenes)) => of_scenes(scenes, arguments)?,
+        _ => (Vec::new(), Vec::new()),
     };
-    let runs = ninebit::threads::on_threads(arguments.threads, || scored(&subjects, &sets, arguments, context))?;
-    if let (Some(report), Some(last)) = (report, sets.last()) {
-        let write = || write(&report, arguments, &runs, &subjects, last);
+    let scored = || match &arguments.pack {
+        Some(pack) => of_pack(pack, arguments),
+        None => scored(&subjects, &sets, arguments, context),
+    };
+    let runs = ninebit::threads::on_threads(arguments.threads, scored)?;
+    if let Some(report) = report {
+        let write = || write(&report, arguments, &runs, &subjects, sets.last());
         ninebit::threads::on_threads(arguments.threads, write)?;
         report.commit()?;
     }
@@ -101,6 +113,22 @@ fn scored(
         ninebit_score::run(subjects, set, explain, &|done, all| progress.report(before + done, before + all + rest))
     };
     Ok(sets.iter().enumerate().map(one).collect::<Result<_, _>>()?)
+}
+
+/// Scores the answers of devices to a pack. Only the last are explained.
+fn of_pack(place: &Path, arguments: &Arguments) -> Result<Vec<Run>, Failure> {
+    let (manifest, tables) = pack::open(place)?;
+    let mut runs = Vec::new();
+    for (n, folder) in arguments.results.iter().enumerate() {
+        let mut answers = results::open(folder, &manifest)?;
+        answers
+            .units
+            .retain(|unit| arguments.suites.is_empty() || arguments.suites.iter().any(|name| name == unit.unit.name()));
+        let name = format!("{}, {}", shown::name(&answers.device.renderer), shown::name(&answers.device.version));
+        let explain = n + 1 == arguments.results.len() && !arguments.no_causes;
+        runs.push(of_answers(name, &tables, &answers, explain)?);
+    }
+    Ok(runs)
 }
 
 /// Begins the folder of a report.
@@ -175,10 +203,10 @@ fn write(
     arguments: &Arguments,
     runs: &[Run],
     subjects: &[Subject],
-    last: &Pictures,
+    last: Option<&Pictures>,
 ) -> Result<(), Failure> {
     let Some(run) = runs.last() else { return Ok(()) };
-    let exhibits = ninebit_score::exhibits(run, subjects, last, MOST_EXHIBITS);
+    let exhibits = last.map_or_else(Vec::new, |last| ninebit_score::exhibits(run, subjects, last, MOST_EXHIBITS));
     let evidence = ninebit_score::evidence(run, subjects);
     for exhibit in &exhibits {
         for (kind, picture) in &exhibit.pictures {
@@ -196,9 +224,10 @@ fn write(
     if !inspected.is_empty() {
         write_below(&report.path().join(SHARED), crate::page::shared(&super::inspect::common()).as_bytes())?;
     }
-    let (against, option) = match arguments.captures {
-        Some(_) => ("captures of the chip", "--captures"),
-        None => ("the model", "--scenes"),
+    let (against, option) = match (&arguments.captures, &arguments.pack) {
+        (Some(_), _) => ("captures of the chip in R, G and B, pixel by pixel", "--captures"),
+        (_, Some(_)) => ("a pack of vectors; a unit counts as a frame, a row as a pixel", "--pack"),
+        _ => ("the model in R, G and B, pixel by pixel", "--scenes"),
     };
     let page = page::page(&page::Report {
         title: "Scorecard",
@@ -218,9 +247,9 @@ fn write(
     Ok(())
 }
 
-/// Returns the inspector's page of an exhibit, where it is compared with the cause of most of its pixels, or `None` if no scene is the frame.
+/// Returns the inspector's page of an exhibit, drawn with the cause of most of its pixels, or `None` if no scene is the frame.
 fn inspector(exhibit: &Exhibit, run: &Run) -> Result<Option<String>, Failure> {
-    let (Some((scene, cause, picture)), Some(causes)) = (&exhibit.scene, &run.causes) else { return Ok(None) };
+    let (Some((scene, cause)), Some(causes)) = (&exhibit.scene, &run.causes) else { return Ok(None) };
     // What a scene's text cannot say stays without a page.
     let Ok(written) = write::scene(scene, &WriteOptions::default()) else { return Ok(None) };
     let (frame, variant) = (&run.frames[exhibit.frame], causes.causes[*cause].variant.names());
@@ -233,7 +262,8 @@ fn inspector(exhibit: &Exhibit, run: &Run) -> Result<Option<String>, Failure> {
         "text": written.text,
         "files": files,
         "chosen": {},
-        "against": { "name": format!("{variant}.png"), "picture": STANDARD.encode(png(picture)?) },
+        "variant": variant,
+        "against": { "name": OTHER, "picture": STANDARD.encode(png(&exhibit.pictures[1].1)?) },
     });
     Ok(Some(crate::page::page_beside(&frame.name, &data, &format!("../{SHARED}"))))
 }

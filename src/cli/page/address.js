@@ -1,4 +1,4 @@
-// The address of the page: pixel, target, policies, and where the text differs from the one that was opened.
+// The address of the page: pixel, target, policies, shortcuts, and where the text differs from the one that was opened.
 import { $, base64Of, bytesOf, through } from "./elements.js";
 
 const addressOf = (bytes) => base64Of(bytes).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
@@ -39,6 +39,7 @@ export class Address {
     if (was !== is) state.e = [start, was.length - end, is.slice(start, is.length - end)];
     const policies = Object.fromEntries(Object.entries(page.policies).filter(([rule, value]) => page.data.chosen[rule] !== value));
     if (Object.keys(policies).length) state.v = policies;
+    if (page.shortcuts !== (page.data.variant ?? "")) state.s = page.shortcuts;
     const turn = (this.turn = (this.turn ?? 0) + 1);
     const address = Object.keys(state).length ? await encoded(state) : "";
     // What was asked for since is later.
@@ -54,13 +55,14 @@ export class Address {
     this.text = location.hash.slice(1);
     if (!this.text || this.text === "pixel") return "";
     try {
-      const { p, t = 0, u = null, e, v = {} } = await decoded(this.text);
+      const { p, t = 0, u = null, e, v = {}, s } = await decoded(this.text);
       const whole = (value) => Number.isInteger(value) && value >= 0;
       if (Array.isArray(p) && p.length === 2 && p.every(whole)) page.at = p;
       page.target = whole(t) ? t : 0;
       page.until = whole(u) ? u : null;
       if (Array.isArray(e) && whole(e[0]) && whole(e[1]) && typeof e[2] === "string") page.text = page.data.text.slice(0, e[0]) + e[2] + page.data.text.slice(e[1]);
       page.policies = { ...page.data.chosen, ...v };
+      page.shortcuts = typeof s === "string" ? s : (page.data.variant ?? "");
       return "";
     } catch {
       return "The address is not one of this page; the scene is as it was saved.";

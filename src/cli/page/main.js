@@ -10,7 +10,7 @@ import { View } from "./view.js";
 
 class Page {
   constructor(data, model, background, view) {
-    Object.assign(this, { data, model, background, rules: data.rules, alternatives: data.policies, policies: { ...data.chosen }, text: data.text, past: [], future: [], target: 0, until: null, against: "", at: null, times: {} });
+    Object.assign(this, { data, model, background, rules: data.rules, alternatives: data.policies, policies: { ...data.chosen }, shortcuts: data.variant ?? "", text: data.text, past: [], future: [], target: 0, until: null, against: "", at: null, times: {} });
     Object.assign(view, { choose: (pixel) => this.choose(pixel), hover: (pixel) => this.hovered(pixel), step: (by) => this.stepDraw(by) });
     this.view = view;
     this.chain = new Chain(this);
@@ -25,9 +25,12 @@ class Page {
 
   async begin() {
     this.apply(await this.address.read());
-    // A page of a report compares with another renderer's way from the start.
+    // A page of a report holds another renderer's picture, and shows the cause of what differs in it.
     const { against } = this.data;
-    if (against) this.dropped(against.name, bytesOf(against.picture));
+    if (!against) return;
+    this.dropped(against.name, bytesOf(against.picture));
+    if (this.shortcuts) this.against = "rules";
+    this.refresh();
   }
 
   wire() {
@@ -42,6 +45,7 @@ class Page {
     on("in", () => this.view.scale(1.25, this.view.canvas.clientWidth / 2, this.view.canvas.clientHeight / 2));
     on("out", () => this.view.scale(0.8, this.view.canvas.clientWidth / 2, this.view.canvas.clientHeight / 2));
     on("fit", () => this.view.fit());
+    $("variant").addEventListener("change", (event) => { this.shortcuts = event.target.value; this.apply(); });
     $("target").addEventListener("change", (event) => { this.target = +event.target.value; this.until = null; this.at = null; this.refresh(); });
     $("channels").addEventListener("change", (event) => { this.view.channels = event.target.value; this.redraw(); });
     $("against").addEventListener("change", (event) => { this.against = event.target.value; this.redraw(); });
@@ -131,7 +135,7 @@ class Page {
   // Shows what stands now, below a message.
   apply(message = "") {
     this.say(message);
-    this.tried(() => this.model.ask({ do: "policies", values: this.policies }));
+    if (!this.tried(() => this.stand())) this.shortcuts = "";
     this.sound = this.open(this.text);
     $("undo").disabled = this.past.length === 0;
     $("redo").disabled = this.future.length === 0;
@@ -211,7 +215,10 @@ class Page {
     const shown = ["colour", "R", "G", "B", "A", ...(targets[this.target].depth ? ["depth", "stencil"] : [])];
     if (!shown.includes(this.view.channels)) this.view.channels = "colour";
     $("channels").replaceChildren(...shown.map((name) => el("option", { selected: name === this.view.channels }, name)));
-    const options = [["", "nothing"], ["ideal", "float64"], ...(this.past.length ? [["before", "the state before"]] : []), ...(this.second ? [["picture", this.second]] : []), ...alternatives];
+    const variants = [...new Set([this.data.variant, this.shortcuts].filter(Boolean))];
+    $("variant-part").hidden = variants.length === 0;
+    $("variant").replaceChildren(...["", ...variants].map((names) => el("option", { value: names, selected: names === this.shortcuts }, names || "the chip's rules")));
+    const options = [["", "nothing"], this.shortcuts ? ["rules", "the chip's rules"] : ["ideal", "float64"], ...(this.past.length ? [["before", "the state before"]] : []), ...(this.second ? [["picture", this.second]] : []), ...alternatives];
     if (!options.some(([value]) => value === this.against)) this.against = "";
     $("against").replaceChildren(...options.map(([value, name]) => el("option", { value, selected: value === this.against }, name)));
     if (this.until !== null && this.until >= draws.length - 1) this.until = null;
@@ -278,18 +285,23 @@ class Page {
     return { ...this.policies, [rule]: value };
   }
 
+  // Says by what policies and shortcuts the model draws from now on.
+  stand(policies = this.policies, shortcuts = this.shortcuts) {
+    return this.model.ask({ do: "policies", values: policies, shortcuts });
+  }
+
   // Draws another scene, or this one under other policies, or does other work with it, and brings back what stands.
-  elsewhere({ policies = this.policies, text = null, name = this.data.name }, work = null) {
+  elsewhere({ policies = this.policies, shortcuts = this.shortcuts, text = null, name = this.data.name }, work = null) {
     const { target, until } = this;
     try {
-      this.model.ask({ do: "policies", values: policies });
+      this.stand(policies, shortcuts);
       if (text !== null) {
         const { scene, findings } = this.model.ask({ do: "open", text, name });
         if (!scene) throw new Error(`${name} cannot be drawn: ${findings[0].message}`);
       }
       return work ? work() : this.model.picture({ do: "draw", target, until });
     } finally {
-      this.model.ask({ do: "policies", values: this.policies });
+      this.stand();
       if (text !== null) this.model.ask({ do: "open", text: this.text, name: this.data.name });
     }
   }
@@ -302,6 +314,7 @@ class Page {
   // The picture that is compared with.
   otherPicture(against) {
     if (against.includes("=")) return this.elsewhere({ policies: this.under(against) });
+    if (against === "rules") return this.elsewhere({ shortcuts: "" });
     return against === "before" ? this.before() : this.taken;
   }
 

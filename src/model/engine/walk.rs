@@ -102,6 +102,25 @@ pub fn covered(
     }
 }
 
+/// Visits the columns that a draw covers in some rows, from the first to before the last, once for each triangle that covers them. A stipple
+/// may leave pixels of them out.
+pub fn spans(
+    plan: &Plan,
+    planned: &PlannedDraw,
+    rows: (i64, i64),
+    mut visit: impl FnMut(&TriangleContext<'_>, i64, (i64, i64)),
+) {
+    for ((rows, columns), number) in triangles(planned, rows) {
+        let Some(context) = TriangleContext::new(plan, planned, number, rows) else { continue };
+        for j in context.triangle.rows.0.max(rows.0)..context.triangle.rows.1.min(rows.1) {
+            let span = context.triangle.span(j, columns);
+            if span.0 < span.1 {
+                visit(&context, j, span);
+            }
+        }
+    }
+}
+
 /// Shades a pixel. Returns whether it was stored.
 #[inline]
 pub fn pixel<O: Observer>(

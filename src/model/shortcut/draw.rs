@@ -1,7 +1,10 @@
 //! Draws a plan with shortcuts.
 
+use std::borrow::Cow;
+
 use super::reals::RealsRecorder;
 use super::{Shortcut, Shortcuts};
+use crate::engine::context::TriangleContext;
 use crate::engine::pixel::{DepthStencil, Fragment};
 use crate::engine::{self, PixelTrace, RenderOptions, TextureWords, TraceError, Tracer, walk};
 use crate::frame::{Frames, Surface};
@@ -13,8 +16,74 @@ use crate::raster::stroke::Figure;
 /// One of so many pixels is few: the scalar engine draws them sooner than the fast one draws all.
 const FEW: usize = 32;
 
-/// The pixels of the first target that are wanted, row by row; others are not drawn. `None` draws all.
-pub type Mask<'a> = Option<&'a [bool]>;
+/// Pixels of the first target that are wanted.
+#[derive(Clone, Debug)]
+pub struct Wanted {
+    /// Their columns, row after row, in order.
+    columns: Vec<u32>,
+    /// Of each row, and of that behind the last, the number of pixels before it.
+    starts: Vec<u32>,
+    width: u32,
+}
+
+impl Wanted {
+    /// Returns those of a target, row by row from the top, whose places are given in order.
+    pub fn new((width, height): (u32, u32), places: impl IntoIterator<Item = usize>) -> Wanted {
+        let mut wanted = Wanted { columns: Vec::new(), starts: vec![0], width };
+        for place in places {
+            while wanted.starts.len() * width as usize <= place {
+                wanted.starts.push(wanted.columns.len() as u32);
+            }
+            wanted.columns.push((place % width as usize) as u32);
+        }
+        wanted.starts.resize(height as usize + 1, wanted.columns.len() as u32);
+        wanted
+    }
+
+    /// Returns the number of pixels.
+    pub fn count(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// Returns their places in order.
+    pub fn places(&self) -> impl Iterator<Item = usize> {
+        (0..self.starts.len().saturating_sub(1))
+            .flat_map(move |row| self.row(row).iter().map(move |column| row * self.width as usize + *column as usize))
+    }
+
+    /// Returns what a picture has in their places.
+    pub fn of<T: Copy>(&self, picture: &[T]) -> Vec<T> {
+        self.places().filter_map(|place| picture.get(place).copied()).collect()
+    }
+
+    fn row(&self, row: usize) -> &[u32] {
+        let at = |row: usize| self.starts.get(row).map_or(self.columns.len(), |start| *start as usize);
+        &self.columns[at(row)..at(row + 1)]
+    }
+
+    /// Returns their columns in a part of a row.
+    fn within(&self, row: i64, (first, end): (i64, i64)) -> &[u32] {
+        let row = self.row(row as usize);
+        let before = |limit: i64| row.partition_point(|column| i64::from(*column) < limit);
+        &row[before(first)..before(end)]
+    }
+}
+
+/// The pixels that are wanted; others are not drawn. `None` draws all.
+pub type Mask<'a> = Option<&'a Wanted>;
+
+/// Returns the frames of a plan of the chip's rules as a renderer with shortcuts draws it.
+pub fn drawn(plan: &Plan, shortcuts: Shortcuts, options: &RenderOptions, mask: Mask<'_>) -> Frames {
+    let plan = changed(plan, shortcuts);
+    let mut frames = engine::cleared(&plan);
+    render(&plan, shortcuts, options, &mut frames, mask);
+    frames
+}
+
+/// Returns a plan of the chip's rules as a renderer with shortcuts would have it.
+fn changed(plan: &Plan, shortcuts: Shortcuts) -> Cow<'_, Plan> {
+    if shortcuts.is_empty() { Cow::Borrowed(plan) } else { Cow::Owned(plan.clone().with_shortcuts(shortcuts)) }
+}
 
 /// Draws a plan, which has these shortcuts already, on frames that are cleared or hold what was there before.
 ///
@@ -24,7 +93,8 @@ pub fn render(plan: &Plan, shortcuts: Shortcuts, options: &RenderOptions, frames
     // A draw that reads the first target may read any of its pixels.
     let is_read = plan.textures.iter().any(|texture| texture.image.target() == Some(0));
     let mask = mask.filter(|_| !is_read);
-    let are_few = |mask: &[bool]| mask.iter().filter(|wanted| **wanted).count() * FEW < mask.len();
+    let pixels = plan.targets.first().map_or(0, |target| target.width as usize * target.height as usize);
+    let are_few = |mask: &Wanted| mask.count() * FEW < pixels;
     if !shortcuts.need_scalar() {
         match mask.filter(|mask| are_few(mask)) {
             Some(mask) => draw_all::<i32>(plan, shortcuts, frames, Some(mask)),
@@ -39,12 +109,19 @@ pub fn render(plan: &Plan, shortcuts: Shortcuts, options: &RenderOptions, frames
     }
 }
 
-/// Traces a pixel of the first target of a plan, which has these shortcuts already, with its last `fragments` fragments.
+/// Traces a pixel of a target of a plan of the chip's rules as a renderer with shortcuts draws it, with its last `fragments` fragments.
 ///
 /// # Errors
-/// The pixel lies outside of the target.
-pub fn trace(plan: &Plan, shortcuts: Shortcuts, pixel: (u32, u32), fragments: u64) -> Result<PixelTrace, TraceError> {
-    let tracer = Tracer::new(plan, 0, pixel, None, fragments)?;
+/// There is no such target, or the pixel lies outside of it.
+pub fn trace(
+    plan: &Plan,
+    shortcuts: Shortcuts,
+    target: usize,
+    pixel: (u32, u32),
+    fragments: u64,
+) -> Result<PixelTrace, TraceError> {
+    let plan = &*changed(plan, shortcuts);
+    let tracer = Tracer::new(plan, target, pixel, None, fragments)?;
     let mut draws = Vec::new();
     let keep = |draw| {
         draws.push(draw);
@@ -87,11 +164,11 @@ fn draw<L: Lane>(
     let mut reals = shortcuts.reals();
     let is_unsnapped = shortcuts.contains(Shortcut::UnsnappedVertices);
     let mut outline: Option<(usize, Option<Outline>)> = None;
-    walk::covered(plan, planned, (0, i64::from(target.height)), |context, i, j| {
-        let at = j as usize * target.width as usize + i as usize;
-        if mask.is_some_and(|mask| !mask[at]) {
+    let mut shade = |context: &TriangleContext<'_>, i: i64, j: i64| {
+        if context.is_stippled(i, j) {
             return;
         }
+        let at = j as usize * target.width as usize + i as usize;
         let mut memory = DepthStencil::new(depth.get(at).copied().unwrap_or(0));
         let e = context.triangle.edges(i, j);
         let mut fragment = Fragment { pixel: (i, j), e, stored: words[at], weights: None };
@@ -110,5 +187,28 @@ fn draw<L: Lane>(
         if let Some(stored) = stored {
             words[at] = stored.word;
         }
+    };
+    walk::spans(plan, planned, (0, i64::from(target.height)), |context, j, span| match mask {
+        Some(mask) => mask.within(j, span).iter().for_each(|i| shade(context, i64::from(*i), j)),
+        None => (span.0..span.1).for_each(|i| shade(context, i, j)),
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wanted_pixels_by_rows() {
+        let places = [3, 4, 9, 21];
+        let wanted = Wanted::new((5, 6), places);
+        assert_eq!((wanted.count(), wanted.places().collect::<Vec<_>>()), (4, places.to_vec()));
+        assert_eq!(wanted.of(&(0..30).collect::<Vec<_>>()), places);
+        let within = |row, first, end| wanted.within(row, (first, end));
+        assert_eq!((within(0, 0, 4), within(0, 0, 5), within(1, 4, 5)), (&[3][..], &[3, 4][..], &[4][..]));
+        assert_eq!(
+            (within(2, 0, 5), within(4, 0, 1), within(4, 1, 5), within(5, 0, 5)),
+            (&[][..], &[][..], &[1][..], &[][..])
+        );
+    }
 }

@@ -11,11 +11,11 @@ mod state;
 mod texels;
 
 pub use depths::shown_depth;
-pub use draw::{Mask, render, trace};
+pub use draw::{Mask, Wanted, drawn, render, trace};
 pub use reals::Reals;
 
 use crate::plan::Plan;
-use crate::state::{Named, named};
+use crate::state::{Named, Policies, named};
 use crate::trace::Rule;
 
 /// What a shortcut is.
@@ -124,7 +124,7 @@ named! {
         /// TEX-1 of Y16 as grey.
         GreyY16 = "grey-y16" => state(&["TEX-1"], "takes Y16 for sixteen bits of grey"),
         /// TEX-1 of R6G5B5 as signed.
-        SignedR6G5B5 = "signed-r6g5b5" => state(&["TEX-1", "TEX-18"], "takes R6G5B5 for a red over 63 and a signed green and blue"),
+        SignedR6G5B5 = "signed-r6g5b5" => state(&["TEX-1", "TEX-18"], "takes R6G5B5 for a red over 63 and a signed green and blue, and 255ths of these for signed bytes where they displace coordinates"),
         /// ROP-3 as the plain equations.
         PlainSignedBlend = "plain-signed-blend" => state(&["ROP-3"], "takes signed blend equations for unsigned ones, with factors"),
         /// TSH-8 ignored.
@@ -223,6 +223,12 @@ impl Shortcuts {
         names.split('+').map(str::trim).try_fold(Shortcuts::NONE, |set, name| {
             Shortcut::from_name(name).map(|shortcut| set.with(shortcut)).ok_or(name)
         })
+    }
+
+    /// Returns policies with the values of those that the shortcuts are. Other shortcuts change none.
+    #[must_use]
+    pub fn policies(self, policies: Policies) -> Policies {
+        state::policies(policies, self)
     }
 
     /// Returns the numbers that stay real.

@@ -7,14 +7,13 @@ use crate::raster::ideal;
 use crate::rop::surface;
 use crate::state::{
     BlendEquation, DepthFormat, DotMapping, DotRounding, ExpandCentre, Filter, FogFunction, FogMode, LineRasterization,
-    Lines, MuxNegative, OutputRounding, RegisterFloor, ShaderOperation, SumRounding,
+    Lines, MuxNegative, OutputRounding, Policies, RegisterFloor, ShaderOperation, SumRounding,
 };
 use crate::texture::stage::PlannedShaderStage;
 
-/// Changes a plan.
-pub(super) fn change(mut plan: Plan, shortcuts: Shortcuts) -> Plan {
+/// Changes policies.
+pub(super) fn policies(mut policies: Policies, shortcuts: Shortcuts) -> Policies {
     let has = |shortcut| shortcuts.contains(shortcut);
-    let policies = &mut plan.policies;
     if has(Shortcut::LiteralExpand) {
         policies.expand_centre = ExpandCentre::Literal;
     }
@@ -30,6 +29,13 @@ pub(super) fn change(mut plan: Plan, shortcuts: Shortcuts) -> Plan {
     if has(Shortcut::MuxByBit) {
         policies.mux_negative = MuxNegative::Bit7;
     }
+    policies
+}
+
+/// Changes a plan.
+pub(super) fn change(mut plan: Plan, shortcuts: Shortcuts) -> Plan {
+    let has = |shortcut| shortcuts.contains(shortcut);
+    plan.policies = policies(plan.policies, shortcuts);
     texels::convert(&mut plan, shortcuts);
     if has(Shortcut::BlackTargets) {
         texels::blacken(&mut plan);

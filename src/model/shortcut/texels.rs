@@ -1,4 +1,5 @@
 //! Textures whose texels another renderer has converted to bytes beforehand.
+#![allow(clippy::float_arithmetic, reason = "another renderer's numbers")]
 
 use super::{Shortcut, Shortcuts};
 use crate::plan::{Plan, PlannedDraw};
@@ -27,7 +28,7 @@ pub(super) fn convert(plan: &mut Plan, shortcuts: Shortcuts) {
         let is_offset = plan.draws.iter().any(|draw| offsets(draw, index));
         let of_texel = |word: u32| match shortcut {
             Shortcut::GreyY16 => grey(word),
-            Shortcut::SignedR6G5B5 if is_offset => signed(word),
+            Shortcut::SignedR6G5B5 if is_offset => taken_twice(word),
             Shortcut::SignedR6G5B5 => signed(word).map(|byte| (255 * i32::from(byte as i8).max(0) / 127) as u8),
             _ => format::shifted(*format, word),
         };
@@ -41,6 +42,9 @@ pub(super) fn convert(plan: &mut Plan, shortcuts: Shortcuts) {
                 continue;
             };
             unit.format = TextureFormat::A8R8G8B8;
+            if shortcut == Shortcut::SignedR6G5B5 {
+                unit.state.signed = [false; 4];
+            }
             let reachable = unit.levels.len();
             (unit.levels, unit.face_words) = Level::chain(unit.format, *width, *height, *levels, *border);
             unit.levels.truncate(reachable);
@@ -67,6 +71,14 @@ fn grey(word: u32) -> [u8; 4] {
 fn signed(word: u32) -> [u8; 4] {
     let five = |shift: u32| ((word >> shift & 31 ^ 16) * 255 / 31).wrapping_sub(128) as u8;
     [((word >> 10 & 63) * 127 / 63) as u8, five(5), five(0), 127]
+}
+
+/// Returns the bytes of a texel of R6G5B5 whose signed numbers, as fractions of 1.0, count as bytes over 255 before these are two's complement.
+/// Those below -128/255 have no such byte.
+fn taken_twice(word: u32) -> [u8; 4] {
+    let [r, g, b, _] = signed(word).map(|byte| i32::from(byte as i8).max(-127) * 255);
+    let byte = |number: i32| ((number as f32 / 127.0).round() as i32).max(-128) as u8;
+    [byte(r), byte(g), byte(b), 255]
 }
 
 /// Replaces textures that read the colours of a render target by zeros.
@@ -125,5 +137,7 @@ mod tests {
         assert_eq!((grey(0), grey(0xffff), grey(0x8080)), ([0, 0, 0, 255], [255; 4], [128, 128, 128, 255]));
         assert_eq!(signed(63 << 10 | 15 << 5 | 16), [127, 127, 128, 127]);
         assert_eq!(signed(0), [0, 3, 3, 127]);
+        assert_eq!(taken_twice(63 << 10 | 15 << 5 | 24), [255, 255, 130, 255]);
+        assert_eq!((taken_twice(0), taken_twice(16)), ([0, 6, 6, 255], [0, 6, 128, 255]));
     }
 }

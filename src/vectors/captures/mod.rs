@@ -289,7 +289,7 @@ impl Frame {
         self.render_with(options, policies, Shortcuts::NONE, None)
     }
 
-    /// Draws the frame as a renderer with shortcuts does. Pixels outside of the mask may be left undrawn.
+    /// Draws the frame as a renderer with shortcuts does. With a mask the result is what stands in the wanted places.
     ///
     /// # Errors
     /// Those of [`render`](Self::render).
@@ -367,7 +367,7 @@ impl PreparedFrame {
         plans.flat_map(|plan| shortcut::concerning(plan).iter().collect::<Vec<_>>()).collect()
     }
 
-    /// Draws the frame as a renderer with shortcuts does. Pixels outside of the mask may be left undrawn.
+    /// Draws the frame as a renderer with shortcuts does. With a mask the result is what stands in the wanted places.
     ///
     /// # Errors
     /// Returns the plan's errors if a scene that reads what was drawn before it cannot be planned.
@@ -409,11 +409,16 @@ impl PreparedFrame {
         {
             let read = |word| shortcut::shown_depth(shortcuts, depth.format, depth_of(word));
             let surface = &mut frames.surfaces[0];
+            if let Some(wanted) = mask {
+                surface.depth = wanted.of(&surface.depth);
+            }
             if depth.format.bits() == 16 {
                 return Ok(surface.depth.iter().map(|word| shown_as_565(read(*word))).collect());
             }
             surface.depth.iter_mut().for_each(|word| *word = depth_stencil(read(*word), stencil_of(*word)));
             words = surface.chip_depth_words().collect();
+        } else if let Some(wanted) = mask {
+            words = wanted.of(&words);
         }
         Ok(surface::show_all(SurfaceFormat::A8R8G8B8, &words))
     }

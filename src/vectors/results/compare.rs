@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, HashMap};
 use super::waiver::Waiver;
 use crate::read::TableRow;
 use crate::table::LAST;
-use crate::unit::answers;
+use crate::unit::{Conditions, answers};
 use crate::{Contents, Kind, Table, Unit, VectorError};
 use ninebit::state::Policies;
 
@@ -128,11 +128,7 @@ pub fn compare(
     let mut units = Vec::new();
     let mut totals: Vec<Explanation> = Vec::new();
     for of_unit in &results.units {
-        let name = of_unit.unit.name();
-        let Some(table) = tables.iter().find(|table| table.writer.contents().unit.name() == name) else {
-            let message = format!("the pack has no unit `{name}`");
-            return Err(VectorError::line("NB1035", &of_unit.path, 2, message, "name the pack that was drawn"));
-        };
+        let (name, table) = (of_unit.unit.name(), table_of(tables, of_unit)?);
         let pairs = paired(table, of_unit)?;
         let mut compared = unit(table, of_unit, &pairs, shown);
         for explanation in &compared.policies {
@@ -168,6 +164,39 @@ fn paired<'r>(table: &'r Table, results: &'r UnitResults) -> Result<Vec<(&'r Tab
         }
     };
     results.rows.iter().map(pair).collect()
+}
+
+/// Returns for each row of results by how much each observed column lies above what the model yields under policies; `None` if the draw
+/// failed. Names and flags count by their numbers.
+///
+/// # Errors
+/// Returns an error if there are results of a row that the pack does not have.
+pub fn deviations(
+    table: &Table,
+    results: &UnitResults,
+    policies: Policies,
+) -> Result<Vec<Option<Vec<i64>>>, VectorError> {
+    let Contents { unit, profile, .. } = table.writer.contents();
+    let of = |(row, result): (&TableRow, &ResultRow)| {
+        let mut yields = vec![0; row.results.len()];
+        unit.evaluate(&row.inputs, &Conditions { profile, policies }, &mut yields);
+        let apart = |(column, value): (&Observed, &i64)| value - expected(&yields, column);
+        result.values.as_ref().map(|values| results.columns.iter().zip(values).map(apart).collect())
+    };
+    Ok(paired(table, results)?.into_iter().map(of).collect())
+}
+
+/// Returns the table of a unit in a pack.
+///
+/// # Errors
+/// Returns an error if the pack has no such unit.
+pub fn table_of<'t>(tables: &'t [Table], results: &UnitResults) -> Result<&'t Table, VectorError> {
+    let name = results.unit.name();
+    let found = tables.iter().find(|table| table.writer.contents().unit.name() == name);
+    found.ok_or_else(|| {
+        let message = format!("the pack has no unit `{name}`");
+        VectorError::line("NB1035", &results.path, 2, message, "name the pack that was drawn")
+    })
 }
 
 /// Returns the expected number of an observed column.

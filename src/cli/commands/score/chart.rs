@@ -3,12 +3,9 @@
 
 use maud::{Markup, html};
 
-use ninebit_score::{Run, Total};
+use ninebit_score::Run;
 
 use super::{percent, thousands};
-
-/// Width of a chart.
-const WIDTH: f64 = 640.0;
 
 /// Returns a bar as long as a share of the longest.
 pub(super) fn bar(value: u64, most: u64, class: &str) -> Markup {
@@ -22,21 +19,23 @@ pub(super) fn bar(value: u64, most: u64, class: &str) -> Markup {
 
 /// Returns the history: a bar for each run, with the shares of exact frames, of those off by one, and of wrong ones.
 pub(super) fn history(runs: &[Run]) -> Markup {
-    let totals: Vec<Total> = runs.iter().map(Run::total).collect();
-    let height = 46 * runs.len();
     html! {
-        svg.history viewBox={ "0 0 " (WIDTH) " " (height) } role="img" aria-label="Shares of frames by folder of results" {
-            @for (n, (run, total)) in runs.iter().zip(&totals).enumerate() {
-                @let (top, all) = (46 * n, total.frames.max(1) as f64);
-                @let part = |count: u64| WIDTH * count as f64 / all;
-                @let (exact, by_one) = (part(total.exact), part(total.off_by_one));
-                text x="0" y=(top + 13) { (run.name) }
-                text.value x=(WIDTH) y=(top + 13) text-anchor="end" {
-                    (thousands(total.exact)) " of " (thousands(total.frames)) " exact, " (percent(total.pixels.wrong, total.pixels.compared)) " of pixels wrong"
+        ul.history {
+            @for run in runs {
+                @let total = run.total();
+                @let part = |count: u64| format!("{:.2}", 100.0 * count as f64 / total.frames.max(1) as f64);
+                li {
+                    strong { (run.name) } " "
+                    span.quiet {
+                        (thousands(total.exact)) " of " (thousands(total.frames)) " exact, " (thousands(total.off_by_one)) " off by one, "
+                        (percent(total.pixels.wrong, total.pixels.compared)) " of pixels wrong"
+                    }
+                    svg viewBox="0 0 100 3" preserveAspectRatio="none" aria-hidden="true" {
+                        rect.wrong width="100" height="3" {}
+                        rect.one width=(part(total.exact + total.off_by_one)) height="3" {}
+                        rect.exact width=(part(total.exact)) height="3" {}
+                    }
                 }
-                rect.wrong x="0" y=(top + 19) width=(WIDTH) height="16" rx="2" {}
-                rect.one x="0" y=(top + 19) width={ (format!("{:.1}", exact + by_one)) } height="16" rx="2" {}
-                rect.exact x="0" y=(top + 19) width={ (format!("{exact:.1}")) } height="16" rx="2" {}
             }
         }
     }

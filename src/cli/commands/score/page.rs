@@ -1,5 +1,7 @@
 //! The page of a report.
 
+use std::collections::BTreeSet;
+
 use base64::Engine as _;
 use base64::engine::general_purpose::URL_SAFE_NO_PAD;
 use maud::{DOCTYPE, Markup, html};
@@ -33,10 +35,13 @@ pub(super) struct Report<'a> {
 }
 
 impl Report<'_> {
-    /// Returns the address of the inspector's page of a frame, at a pixel, if there is one.
-    fn inspector(&self, frame: usize, pixel: Option<(u32, u32)>) -> Option<String> {
+    /// Returns the address of the inspector's page of a frame, at a pixel as a variant draws it, if there is one.
+    fn inspector(&self, frame: usize, shown: Option<((u32, u32), Shortcuts)>) -> Option<String> {
         let exhibit = self.exhibits.iter().find(|exhibit| exhibit.frame == frame)?;
-        let state = pixel.map(|(x, y)| URL_SAFE_NO_PAD.encode(format!("{{\"p\":[{x},{y}]}}")));
+        let state = |((x, y), variant): ((u32, u32), Shortcuts)| {
+            URL_SAFE_NO_PAD.encode(format!("{{\"p\":[{x},{y}],\"s\":\"{}\"}}", variant.names()))
+        };
+        let state = shown.map(state);
         let hash = state.map_or_else(String::new, |state| format!("#{state}"));
         self.inspected.contains(&frame).then(|| format!("scenes/{}.html{hash}", exhibit.file))
     }
@@ -57,11 +62,11 @@ pub(super) fn page(report: &Report<'_>) -> String {
                 body {
                     header {
                         h1 { (report.title) }
-                        p { "Pictures of " (shown::name(&run.name)) ", compared with " (report.against) " in R, G and B, pixel by pixel." }
+                        p { "Results of " (shown::name(&run.name)) ", compared with " (report.against) "." }
                         (tiles(run, causes))
                     }
                     main {
-                        @if report.runs.len() > 1 { h2 { "History" } div.scroll { (chart::history(report.runs)) } (news(report.runs)) }
+                        @if report.runs.len() > 1 { h2 { "History" } (chart::history(report.runs)) (news(report.runs)) }
                         @if !causes.causes.is_empty() { (table_of_causes(causes)) (cases(report, causes)) }
                         (table_of_suites(report.runs))
                         (figures(report, run))
@@ -88,7 +93,7 @@ fn tiles(run: &Run, causes: &Causes) -> Markup {
             }
             @if total.missing > 0 { (one(thousands(total.missing), "frames without a picture")) }
             @if total.unreadable > 0 { (one(thousands(total.unreadable), "pictures of another size, or not readable")) }
-            @if !run.foreign.is_empty() { (one(thousands(run.foreign.len() as u64), "pictures that no frame has")) }
+            @if !run.foreign.is_empty() { (one(thousands(run.foreign.len() as u64), "without a frame of the chip")) }
         }
     }
 }
@@ -114,7 +119,7 @@ fn table_of_causes(causes: &Causes) -> Markup {
         h2 { "Causes" }
         p.quiet {
             "A pixel is explained where the model yields the chip's bytes by its rules and the other renderer's with a shortcut. \
-             Each is counted once, under the fewest shortcuts. The last column is the number that a shortcut would yield if the errors were dealt out at random."
+             Each is counted once, under the fewest shortcuts. \"By chance\" is the number that a shortcut would yield if the errors were dealt out at random."
         }
         (rows_of_causes(&causes.causes[..shown], 0, most))
         @if causes.causes.len() > shown {
@@ -123,20 +128,27 @@ fn table_of_causes(causes: &Causes) -> Markup {
     }
 }
 
+/// Returns the main rule of each shortcut of a variant, once.
+fn main_rules(variant: Shortcuts) -> Vec<&'static str> {
+    let mut rules: Vec<&str> = variant.iter().map(|shortcut| shortcut.reading().rules[0]).collect();
+    rules.dedup();
+    rules
+}
+
 /// Returns causes as rows of a table. The first has a number.
 fn rows_of_causes(causes: &[Cause], first: usize, most: u64) -> Markup {
     html! {
         div.scroll { table {
-            tr { th { "the renderer ..." } th { "rule" } th { "grade" } th.n { "pixels" } th {} th.n { "by chance" } }
+            tr { th { "the renderer ..." } th.n { "pixels" } th {} th.n { "by chance" } th { "rule" } th { "grade" } }
             @for (n, cause) in causes.iter().enumerate().map(|(n, cause)| (first + n, cause)) {
                 @let id = first_rule(cause.variant);
                 tr {
                     td.wide { (swatch(n)) a href={ "#cause" (n) } { (does(cause.variant)) } }
-                    td { @for shortcut in cause.variant.iter() { span.rule { (shortcut.reading().rules[0]) } " " } }
-                    td { (grade(id)) }
                     td.n { (thousands(cause.pixels)) }
                     td { (chart::bar(cause.pixels, most, "cause")) }
                     td.n { (thousands(cause.chance.expected as u64)) }
+                    td { @for rule in main_rules(cause.variant) { span.rule { (rule) } " " } }
+                    td { (grade(id)) }
                 }
             }
         } }
@@ -167,7 +179,8 @@ fn folded(report: &Report<'_>, n: usize, cause: &Cause) -> Markup {
 }
 
 fn case(report: &Report<'_>, cause: &Cause, evidence: Option<&Evidence>) -> Markup {
-    let rules: Vec<&str> = cause.variant.iter().flat_map(|shortcut| shortcut.reading().rules).copied().collect();
+    let all: BTreeSet<&str> = cause.variant.iter().flat_map(|shortcut| shortcut.reading().rules).copied().collect();
+    let rules: Vec<&str> = all.into_iter().collect();
     html! {
         @for id in &rules {
             @if let Some(rule) = super::rule(id) {
@@ -180,7 +193,7 @@ fn case(report: &Report<'_>, cause: &Cause, evidence: Option<&Evidence>) -> Mark
             p {
                 "Pixel " (sample.at.0) ", " (sample.at.1) " of " code { (shown::name(frame)) } ": the chip shows "
                 (pixel(sample.truth)) ", the renderer " (pixel(sample.other)) "."
-                @if let Some(place) = report.inspector(*index, Some(sample.at)) { " " a href=(place) { "Open in the inspector" } }
+                @if let Some(place) = report.inspector(*index, Some((sample.at, cause.variant))) { " " a href=(place) { "Open in the inspector" } }
             }
             @if !lines.is_empty() {
                 div.scroll { table {
@@ -195,11 +208,6 @@ fn case(report: &Report<'_>, cause: &Cause, evidence: Option<&Evidence>) -> Mark
                     }
                 } }
             }
-            @let rows: Vec<&str> = rules.iter().filter_map(|id| super::rule(id)?.fields("Command").next()).collect();
-            @if !rows.is_empty() {
-                h3 { "For a unit test" }
-                pre { @for row in rows { (row.trim_matches('`')) "\n" } }
-            }
             h3 { "For a bug report" }
             p {
                 "The renderer " (does(cause.variant)) ". The chip does not (" (rules.join(", ")) "): pixel " (sample.at.0) ", " (sample.at.1) " of "
@@ -207,6 +215,15 @@ fn case(report: &Report<'_>, cause: &Cause, evidence: Option<&Evidence>) -> Mark
                 (thousands(cause.pixels)) " pixels of these programs differ for it. The rules:"
             }
             pre { @for id in &rules { "ninebit rule " (id) "\n" } (report.command) " --suite " (suite) }
+        } @else {
+            h3 { "For a bug report" }
+            p { "The renderer " (does(cause.variant)) ". The chip does not: " (thousands(cause.pixels)) " results differ for it. The rules:" }
+            pre { @for id in &rules { "ninebit rule " (id) "\n" } (report.command) }
+        }
+        @let rows: Vec<&str> = rules.iter().filter_map(|id| super::rule(id)?.fields("Command").next()).collect();
+        @if !rows.is_empty() {
+            h3 { "For a unit test" }
+            pre { @for row in rows { (row.trim_matches('`')) "\n" } }
         }
     }
 }
@@ -276,7 +293,7 @@ fn figures(report: &Report<'_>, run: &Run) -> Markup {
     html! {
         @if !report.exhibits.is_empty() {
             h2 { "Frames" }
-            p.quiet { "The difference is eight times as bright. In the last picture each colour is a cause, white is unexplained." }
+            p.quiet { "Differences are eight times as bright, and never faint. In the last picture each colour is a cause, white is unexplained." }
             @for exhibit in report.exhibits {
                 @let frame = &run.frames[exhibit.frame];
                 @let name = format!("{}/{}", frame.suite, frame.name);
