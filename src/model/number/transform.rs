@@ -1,4 +1,4 @@
-//! Numbers of the transform unit: products, sums, comparisons, reciprocals and roots (XFM-1, XFM-2).
+//! Numbers of the transform unit: products, sums, comparisons, reciprocals and roots (VTX-5).
 //!
 //! All functions take and return patterns of binary32, since the unit rounds in its own ways.
 //!
@@ -146,7 +146,7 @@ pub fn floor(x: u32) -> u32 {
     }
 }
 
-/// XFM-2: returns 1/x by two steps of Newton's method from seven bits. Of zero it is infinity.
+/// VTX-5: returns 1/x by two steps of Newton's method from seven bits. Of zero it is infinity.
 pub fn reciprocal(x: u32) -> u32 {
     match x {
         _ if is_nan(x) => NAN,
@@ -158,7 +158,7 @@ pub fn reciprocal(x: u32) -> u32 {
     }
 }
 
-/// XFM-2: returns 1/x, whose magnitude is limited to 2^-64 to 2^64.
+/// VTX-5: returns 1/x, whose magnitude is limited to 2^-64 to 2^64.
 pub fn limited_reciprocal(x: u32) -> u32 {
     if is_nan(x) {
         return NAN;
@@ -189,7 +189,7 @@ fn reciprocal_parts(x: u32) -> (i32, u32) {
     (exponent - 1, third as u32 & (LEADING - 1))
 }
 
-/// XFM-2: returns 1/sqrt |x| by two steps of Newton's method from seven bits. Of zero it is infinity.
+/// VTX-5: returns 1/sqrt |x| by two steps of Newton's method from seven bits. Of zero it is infinity.
 pub fn reciprocal_root(x: u32) -> u32 {
     if is_nan(x) {
         return NAN;
@@ -210,7 +210,7 @@ pub fn reciprocal_root(x: u32) -> u32 {
     finite(0, BIAS - half - 1, third as u32)
 }
 
-/// PNT-3, XFM-2: returns floor(2^8 / sqrt m) for the middle m in [1, 4) of all mantissas that share six bits of fraction with x and
+/// PNT-3, VTX-5: returns floor(2^8 / sqrt m) for the middle m in [1, 4) of all mantissas that share six bits of fraction with x and
 /// an exponent that is even or odd with x's.
 pub(crate) fn twice_root_of_middle(x: u32) -> u32 {
     let odd = (exponent(x) & 1) ^ 1;

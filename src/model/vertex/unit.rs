@@ -1,4 +1,4 @@
-//! XFM-3: vectors and matrices in the arithmetic of the transform unit. Numbers are patterns of binary32
+//! VTX-5: vectors and matrices in the arithmetic of the transform unit. Numbers are patterns of binary32
 //! ([`transform`](crate::number::transform)).
 
 use super::Rows;

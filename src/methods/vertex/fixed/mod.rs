@@ -3,7 +3,7 @@
 //! INFERRED: the formulas are those of envytools' model of NV10 (`nvhw/pgraph_celsius_xfrm.c`, which its `hwtest` compares
 //! with cards) where that chip has the state, and of xemu and Mesa's nouveau driver for what is new; they agree where they
 //! overlap, unless a comment says so. Positions, eye space and fog coordinates are in the arithmetic of the transform unit
-//! (XFM-1 to XFM-3). Generated coordinates and light are binary32 in the order in which they are written; the chip cuts
+//! (VTX-5). Generated coordinates and light are binary32 in the order in which they are written; the chip cuts
 //! the first, and its light unit has 14 significant bits.
 #![allow(clippy::float_arithmetic, reason = "the vertex side is f32 by rule")]
 

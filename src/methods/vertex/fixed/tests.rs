@@ -67,7 +67,7 @@ fn at(position: [f32; 3], normal: [f32; 3]) -> Attributes {
     vertex
 }
 
-/// The window position of a point in clip space (XFM-3).
+/// The window position of a point in clip space (VTX-5).
 fn window(clip: [f32; 4]) -> [f32; 4] {
     unit::window(words(clip), [320.0, 240.0, 0.0])
 }
