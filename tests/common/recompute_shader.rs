@@ -17,6 +17,24 @@ fn value(inputs: &Inputs, n: usize) -> i128 {
     inputs[n].1.value
 }
 
+/// TSH-3: returns root(left / 2^30) as a numerator and a denominator.
+fn root_in_pieces(left: i128) -> (i128, i128) {
+    let (mut m, mut unit) = (left, 1 << 15);
+    while m < 1 << 28 {
+        (m, unit) = (4 * m, 2 * unit);
+    }
+    let width = if m < 1 << 29 { 1 << 23 } else { 1 << 24 };
+    let start = m - m % width;
+    // The largest r with r^2 <= n 2^30, bit by bit: the root of n / 2^30 with 30 fraction bits.
+    let root = |n: i128| {
+        let fits = |r: i128| r * r <= n << 30;
+        (0..=30).rev().fold(0, |r: i128, bit| if fits(r | 1 << bit) { r | 1 << bit } else { r })
+    };
+    let (low, high) = (root(start), root(start + width));
+    let along = 1024 * (m - start) / width;
+    ((256 * (low >> 12) + ((high - low) >> 14) * along) >> 11, unit)
+}
+
 pub fn remap(operation: &str, inputs: &Inputs) -> Number {
     let v = |n: usize| value(inputs, n);
     let signed = |v: i128| i128::from(v as u8 as i8);
@@ -31,16 +49,9 @@ pub fn remap(operation: &str, inputs: &Inputs) -> Number {
         "remap_half" => quotient(half(0), 65535),
         "remap_half_signed" => quotient(signed_half(0), 32768),
         "third_of_unit" => {
-            let left = (32768 * 32768 - signed_half(0).pow(2) - signed_half(2).pow(2)).max(0);
-            // Finds the largest n with 2 n <= sqrt(left), bit by bit.
-            let mut n = 0;
-            for bit in (0..=14).rev() {
-                let more = n | 1 << bit;
-                if 4 * more * more <= left {
-                    n = more;
-                }
-            }
-            quotient(n, 1 << 14)
+            let left = 32768 * 32768 - signed_half(0).pow(2) - signed_half(2).pow(2);
+            let (root, unit) = if left > 0 { root_in_pieces(left) } else { (0, 1) };
+            quotient(root, unit)
         }
         _ => bits(1.0),
     }
