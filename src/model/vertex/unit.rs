@@ -43,11 +43,11 @@ mod tests {
     #[test]
     fn directions_and_windows() {
         let (direction, length) = direction(words([3.0, 0.0, -4.0]));
-        assert_eq!(direction.map(f32::from_bits), [0.6, 0.0, -0.79999995]);
+        assert_eq!(direction.map(f32::from_bits), [0.59999996, 0.0, -0.79999995]);
         assert_eq!(f32::from_bits(length), 4.9999995);
         assert_eq!(super::direction([0; 3]), ([0; 3], 0));
         // 1/3 is cut, so the quotient 1 is not reached.
-        assert_eq!(window(words([3.0, 6.0, 0.0, 3.0]), [0.0, 0.5, 0.0]), [0.99999994, 2.5, 0.0, 3.0]);
+        assert_eq!(window(words([3.0, 6.0, 0.0, 3.0]), [0.0, 0.5, 0.0]), [0.99999994, 2.4999998, 0.0, 3.0]);
         let rows = [[1.0, 0.0, 0.0, 2.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 7.0], [0.0, 0.0, 1.0, 7.0]];
         assert_eq!(transform(&rows, words([1.0, 2.0, 3.0, 1.0])), words([3.0, 2.0, 10.0, 10.0]));
     }
