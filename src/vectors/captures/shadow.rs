@@ -141,16 +141,18 @@ impl Path {
         if self.is_program { space::programmed_edges } else { unprojected }
     }
 
-    /// Returns the depth of a point in world space, and its w. A vertex program adds the viewer's distance first.
+    /// Returns the depth of a point in world space, and its w. A vertex program adds the viewer's distance first, and every product and sum of it is
+    /// cut; the guard bits of the transform unit's sums (VTX-5) would change four frames.
     fn depth(self, z: f32) -> [f32; 2] {
         let window = space::window_to(f64::from(self.deepest));
-        let (z, matrix) = if self.is_program {
-            (z + space::DISTANCE as f32, window)
-        } else {
-            (z, space::product(space::eye(), window))
-        };
-        let [_, _, depth, w] = space::fixed_function_to([0.0, 0.0, z, 1.0], &matrix);
-        [depth, w]
+        if !self.is_program {
+            let [_, _, depth, w] = space::fixed_function_to([0.0, 0.0, z, 1.0], &space::product(space::eye(), window));
+            return [depth, w];
+        }
+        let w = space::toward_zero(f64::from(z) + space::DISTANCE);
+        let scaled = space::toward_zero(f64::from(w) * window[2][2]);
+        let depth = f64::from(space::toward_zero(f64::from(scaled) + window[3][2]));
+        [space::toward_zero(depth * f64::from(space::toward_zero(1.0 / f64::from(w)))), w]
     }
 
     /// Returns a rectangle whose depths at its upper and lower edge are those of two z in world space.

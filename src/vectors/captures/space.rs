@@ -114,6 +114,12 @@ pub(super) fn flat(point: [f32; 4]) -> [f32; 4] {
     without_depth(fixed_function(point))
 }
 
+/// Truncates a number to single precision.
+pub(super) fn toward_zero(value: f64) -> f32 {
+    let nearest = value as f32;
+    if f64::from(nearest).abs() > value.abs() { f32::from_bits(nearest.to_bits() - 1) } else { nearest }
+}
+
 /// Transforms a point of the world by the programs' vertex program, which multiplies by the reciprocal of w.
 pub(super) fn programmed(point: [f32; 4]) -> [f32; 4] {
     unit::window(unit::transform(&rows(&product(eye(), window())), unit::words(point)), [0.0; 3])
