@@ -28,12 +28,31 @@ fn depth_of_word(format: DepthFormat, word: u32) -> f32 {
     }
 }
 
-/// Adds two triangles that cover a rectangle. Depths and colours belong to its corners, clockwise from the upper left.
-fn quad(vertices: &mut Vec<Vertex>, edges: [f32; 4], depths: [f32; 4], colors: [[f32; 3]; 4]) {
+/// Adds two triangles that cover a rectangle. Positions and colours belong to its corners, clockwise from the upper left.
+fn quad(vertices: &mut Vec<Vertex>, positions: [[f32; 4]; 4], colors: [[f32; 3]; 4]) {
     for n in [0, 1, 2, 0, 2, 3] {
-        let ([x, y], [r, g, b]) = (corners(edges)[n], colors[n]);
-        let diffuse = VertexColor::Floats([r, g, b, 1.0]);
-        vertices.push(Vertex { position: [x, y, depths[n], 1.0], diffuse, ..Vertex::default() });
+        let (position, [r, g, b]) = (positions[n], colors[n]);
+        vertices.push(Vertex { position, diffuse: VertexColor::Floats([r, g, b, 1.0]), ..Vertex::default() });
+    }
+}
+
+/// Adds a draw over a depth buffer with each of several clears: pictures and depths, with and without compression, which changes no pixel.
+fn over_clears(
+    frames: &mut Frames,
+    prefix: &str,
+    (format, bits, deepest): (DepthFormat, &str, u32),
+    steps: u32,
+    draw: &Draw,
+) {
+    for step in 0..=steps {
+        let clear = deepest - step * (deepest / steps);
+        let mut target = frame_buffer(0xff00_0000);
+        target.depth = Some(DepthBuffer { format, clear, clear_stencil: 0 });
+        let scene = scene(vec![target], vec![], vec![draw.clone()]);
+        for compressed in ["n", "y"] {
+            let float = if format.is_float() { "y" } else { "n" };
+            frames.both(&format!("{prefix}{bits}_C{compressed}_FZ{float}_M{clear:06x}"), scene.clone());
+        }
     }
 }
 
@@ -41,6 +60,10 @@ fn vertices(format: DepthFormat, deepest: u32) -> Vec<Vertex> {
     let (left, top, right, bottom) = (128.0, 40.0, 512.0, 440.0);
     let full = deepest as f32;
     let mut all = Vec::new();
+    let mut add = |edges: [f32; 4], depths: [f32; 4], colors: [[f32; 3]; 4]| {
+        let position = |n: usize| [corners(edges)[n][0], corners(edges)[n][1], depths[n], 1.0];
+        quad(&mut all, [0, 1, 2, 3].map(position), colors);
+    };
     let at = |word: u32| depth_of_word(format, word);
     // 31 by 32 small quads, twelve pixels from one to the next.
     let increment = full / 996.0;
@@ -52,7 +75,7 @@ fn vertices(format: DepthFormat, deepest: u32) -> Vec<Vertex> {
             let grey = |z: f32| [0.25 + z / full * 0.75; 3];
             let (near, far) = (at(z as u32), at(other.max(0.0) as u32));
             let colors = [grey(z), grey(other), grey(other), grey(z)];
-            quad(&mut all, [x, y, x + 8.0, y + 8.0], [near, far, far, near], colors);
+            add([x, y, x + 8.0, y + 8.0], [near, far, far, near], colors);
             z += increment;
             slope = -slope;
         }
@@ -61,14 +84,14 @@ fn vertices(format: DepthFormat, deepest: u32) -> Vec<Vertex> {
     let (near, far) = (at(back * 3 / 4), at(0));
     let (first, second) = ([near / full, 0.75, near / full], [0.75, far / full, far / full]);
     let area = [left + 4.0, bottom - 10.0, right - 20.0, bottom - 5.0];
-    quad(&mut all, area, [near, far, far, near], [first, second, second, first]);
+    add(area, [near, far, far, near], [first, second, second, first]);
     let (near, far) = (at(1), at(deepest / 2));
     let (first, second) = ([near / full, 0.5, near / full], [0.5, far / full, far / full]);
     let area = [right - 10.0, top + 5.0, right - 2.0, bottom - 5.0];
-    quad(&mut all, area, [near, near, far, far], [first, first, second, second]);
+    add(area, [near, near, far, far], [first, first, second, second]);
     let (near, far) = (at(back * 2 / 3), at(back));
     let colors = [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.4, 0.3, 0.0], [0.0, 0.0, 1.0]];
-    quad(&mut all, [left, top, right, bottom], [near, near, far, far], colors);
+    add([left, top, right, bottom], [near, near, far, far], colors);
     all
 }
 
@@ -78,28 +101,7 @@ pub(super) fn formats(frames: &mut Frames) {
         let range = (format == DepthFormat::Z24S8F).then_some(FLOAT_RANGE);
         let depth_test = Some(in_steps(CompareFunction::Less, true, range));
         let draw = Draw { depth_test, ..draw(Topology::Triangles, vertices(format, deepest)) };
-        for step in 0..=STEPS {
-            let clear = deepest - step * (deepest / STEPS);
-            let mut target = frame_buffer(0xff00_0000);
-            target.depth = Some(DepthBuffer { format, clear, clear_stencil: 0 });
-            let scene = scene(vec![target], vec![], vec![draw.clone()]);
-            // Compression of the depth buffer changes no pixel.
-            for compressed in ["n", "y"] {
-                let float = if format.is_float() { "y" } else { "n" };
-                let name = format!("DepthFmt_{bits}_C{compressed}_FZ{float}_M{clear:06x}");
-                frames.both(&name, scene.clone());
-            }
-        }
-    }
-}
-
-/// The depth that the fixed function's matrix has as the deepest for a format, as a binary32 pattern where it is a float.
-fn deepest_of_matrix(format: DepthFormat) -> f64 {
-    match format {
-        DepthFormat::Z16 => 65535.0,
-        DepthFormat::Z24S8 => 16_777_215.0,
-        DepthFormat::Z16F => f32::from_bits(0x43ff_f800).into(),
-        DepthFormat::Z24S8F => f32::from_bits(0x7149_f2ca).into(),
+        over_clears(frames, "DepthFmt_", (format, bits, deepest), STEPS, &draw);
     }
 }
 
@@ -109,16 +111,11 @@ fn unprojected_vertices(matrix: &Matrix) -> Vec<Vertex> {
     let (left, top, right, bottom) = (128.0_f32, 48.0_f32, 512.0_f32, 432.0_f32);
     let (near, far) = (-6.0_f32, 193.0_f32);
     // The program finds the points before it sets the format of depths.
-    let before = space::product(space::eye(), space::window());
+    let inverse = space::inverse(&space::product(space::eye(), space::window()));
     let mut all = Vec::new();
-    // Depths and colours clockwise from the upper left.
-    let mut add = |[left, top, right, bottom]: [f32; 4], depths: [f32; 4], colors: [[f32; 3]; 4]| {
-        for n in [0, 1, 2, 0, 2, 3] {
-            let point = space::unproject(corners([left, top, right, bottom])[n], depths[n], &before);
-            let [r, g, b] = colors[n];
-            let diffuse = VertexColor::Floats([r, g, b, 1.0]);
-            all.push(Vertex { position: space::fixed_function_to(point, matrix), diffuse, ..Vertex::default() });
-        }
+    let mut add = |edges: [f32; 4], depths: [f32; 4], colors: [[f32; 3]; 4]| {
+        let point = |n: usize| space::unproject(corners(edges)[n], depths[n], &inverse);
+        quad(&mut all, [0, 1, 2, 3].map(|n| space::fixed_function_to(point(n), matrix)), colors);
     };
     let increment = (far - near) / 328.0;
     let (mut z, mut slope) = (near, increment * 0.75);
@@ -152,21 +149,13 @@ fn unprojected_vertices(matrix: &Matrix) -> Vec<Vertex> {
 
 /// Adds the frames of Depth_buffer_fixed_function.
 pub(super) fn fixed_function(frames: &mut Frames) {
-    const CUTOFFS: u32 = 4;
     for (format, bits, deepest) in FORMATS {
-        let matrix = space::product(space::eye(), space::window_to(deepest_of_matrix(format)));
+        // The programs take another number for the deepest float of 24 bits.
+        let limit = if format == DepthFormat::Z24S8F { FLOAT_RANGE.highest } else { depth_of_word(format, deepest) };
+        let matrix = space::product(space::eye(), space::window_to(limit.into()));
         let range = DepthRange { lowest: 0.0, highest: 16_777_216.0, clamps: false, drops_triangles: false };
         let depth_test = Some(in_steps(CompareFunction::Less, true, Some(range)));
         let draw = Draw { depth_test, ..draw(Topology::Triangles, unprojected_vertices(&matrix)) };
-        for step in 0..=CUTOFFS {
-            let clear = deepest - step * (deepest / CUTOFFS);
-            let mut target = frame_buffer(0xff00_0000);
-            target.depth = Some(DepthBuffer { format, clear, clear_stencil: 0 });
-            let scene = scene(vec![target], vec![], vec![draw.clone()]);
-            for compressed in ["n", "y"] {
-                let float = if format.is_float() { "y" } else { "n" };
-                frames.both(&format!("{bits}_C{compressed}_FZ{float}_M{clear:06x}"), scene.clone());
-            }
-        }
+        over_clears(frames, "", (format, bits, deepest), 4, &draw);
     }
 }

@@ -203,8 +203,8 @@ const SOURCES: [&str; 5] = ["spec_alpha", "radial", "planar", "abs_planar", "fog
 const SECONDARY_ALPHAS: [f32; 4] = [0.0, 1.0, 0.75, 0.25];
 
 /// Returns the distance from the eye of a point that programs find for a panel's corner, by the transform unit.
-fn distance(edges: [f32; 4], corner: usize, z: f32) -> f32 {
-    let point = space::unproject(corners(edges)[corner], z, &space::product(space::eye(), space::window()));
+fn distance(edges: [f32; 4], corner: usize, z: f32, inverse: &space::Matrix) -> f32 {
+    let point = space::unproject(corners(edges)[corner], z, inverse);
     let [x, y, z, _] = unit::transform(&space::rows(&space::eye()), unit::words(point));
     f32::from_bits(unit::direction([x, y, z]).1)
 }
@@ -227,6 +227,7 @@ pub(super) fn generated(frames: &mut Frames) {
                         ("spec_alpha", _) if !is_program => [0.5, (1.0_f64 / 32.0).sqrt() as f32],
                         _ => parameters(mode, 0.0),
                     };
+                    let inverse = space::inverse(&space::product(space::eye(), space::window()));
                     let places = grid([48.0, 70.0], 22.0, [2.0, 2.0]).zip(steps(-6.0, 0.5)).zip(steps(50.0, -0.2));
                     let panels = places.flat_map(|((edges, z), fog_x)| {
                         let w = [z + 7.0, z + 8.0];
@@ -236,7 +237,7 @@ pub(super) fn generated(frames: &mut Frames) {
                             let d = match source {
                                 _ if is_program => fog_x,
                                 "spec_alpha" => SECONDARY_ALPHAS[corner],
-                                "radial" => distance(edges, corner, w - 7.0),
+                                "radial" => distance(edges, corner, w - 7.0, &inverse),
                                 "fog_x" => fog_x,
                                 // The programs' plane yields twice the depth.
                                 _ => 2.0 * w,

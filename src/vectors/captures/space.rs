@@ -26,7 +26,7 @@ pub(super) fn product(a: Matrix, b: Matrix) -> Matrix {
 }
 
 /// Returns the inverse of a matrix as the programs compute it: cofactors in double precision, rounded, times the reciprocal of the determinant.
-fn inverse(matrix: &Matrix) -> Matrix {
+pub(super) fn inverse(matrix: &Matrix) -> Matrix {
     let cofactor = |row: usize, column: usize| {
         let at = |r: usize, c: usize| matrix[(row + r) % 4][(column + c) % 4];
         let minor = |r: usize, s: usize| at(r, 2) * at(s, 3) - at(r, 3) * at(s, 2);
@@ -39,10 +39,10 @@ fn inverse(matrix: &Matrix) -> Matrix {
 }
 
 /// Returns the point of the world with the depth `z` that programs find for a place of the screen: between two points of its line of sight.
-pub(super) fn unproject([x, y]: [f32; 2], z: f32, matrix: &Matrix) -> [f32; 4] {
-    let inverse = inverse(matrix);
+/// The matrix leads from window coordinates to the world.
+pub(super) fn unproject([x, y]: [f32; 2], z: f32, inverse: &Matrix) -> [f32; 4] {
     let [near, far] = [0.0, 64000.0].map(|depth| {
-        let [x, y, z, w] = in_single([x, y, depth, 1.0], &inverse);
+        let [x, y, z, w] = in_single([x, y, depth, 1.0], inverse);
         [x / w, y / w, z / w]
     });
     let t = (z - near[2]) / (far[2] - near[2]);

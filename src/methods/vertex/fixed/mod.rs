@@ -12,7 +12,7 @@ mod read;
 
 use super::{ATTRIBUTES, Attributes, Outputs, attribute};
 use light::{Lighting, Surface};
-use ninebit::number::transform::{SIGN, product, reciprocal, sum};
+use ninebit::number::transform::{SIGN, is_zero, product, reciprocal, sum};
 use ninebit::state::Profile;
 use ninebit::vertex::point::PointParameters;
 use ninebit::vertex::texgen::CoordinateSet;
@@ -130,7 +130,7 @@ impl FixedFunction {
         let weights = inputs[attribute::WEIGHT];
         let position = self.blended(&self.model_view, weights, inputs[attribute::POSITION]);
         let [x, y, z, w] = position;
-        let point = if w == 0 { [x, y, z] } else { [x, y, z].map(|c| product(c, reciprocal(w))) };
+        let point = if is_zero(w) { [x, y, z] } else { [x, y, z].map(|c| product(c, reciprocal(w))) };
         let [x, y, z, _] = inputs[attribute::NORMAL];
         let [x, y, z, _] = self.blended(&self.normal, weights, [x, y, z, 0.0]);
         let normal = if self.normalizes { unit::direction([x, y, z]).0 } else { [x, y, z] };
