@@ -230,7 +230,7 @@ fn engines_agree_on_broad_random_scenes() {
 /// Scenes whose numbers lie at limits, where roundings tie, or are copied from field to field.
 #[test]
 fn engines_agree_on_extreme_random_scenes() {
-    agree(&random_scene::wide::extreme::scene(), number("NINEBIT_ENGINE_MATRIX", 12), 1);
+    agree(&random_scene::wide::extreme::scene(), number("NINEBIT_ENGINE_MATRIX", 12) / 2, 2);
 }
 
 /// Depth and offset need more bits than the definition keeps, and a limit of the range is what their sum rounds to.
@@ -276,12 +276,12 @@ fn engines_agree_on_slivers() {
     }
 }
 
-/// Scenes of the repository, changed at random: each once, or as often as `NINEBIT_ENGINE_CHANGES` says.
+/// Scenes of the repository, changed at random: every other one once, or each as often as `NINEBIT_ENGINE_CHANGES` says.
 #[test]
 fn engines_agree_on_changed_scenes() {
     let (changes, seed) = (number("NINEBIT_ENGINE_CHANGES", 1_u64), number("NINEBIT_ENGINE_SEED", 5_u64));
     let (available, mut drawn, mut refused, mut complaints) = (available(), 0, 0, Vec::new());
-    for path in scene_files::below(&at("vectors/scenes")) {
+    for path in scene_files::below(&at("vectors/scenes")).into_iter().step_by(if changes == 1 { 2 } else { 1 }) {
         let original = scene::load(&path, &Limits::default()).unwrap().scene;
         for number in 0..changes {
             let mut scene = original.clone();

@@ -326,7 +326,7 @@ fn frames_return(frames: &[Frame]) {
 
 #[test]
 fn captured_frames_return() {
-    frames_return(&captures::sample(captures::frames(&[]).unwrap(), 300));
+    frames_return(&captures::sample(captures::frames(&[]).unwrap(), 150));
 }
 
 #[test]
