@@ -31,13 +31,8 @@ fn models() -> [Matrix; 2] {
         .map(|(place, angle)| space::product(space::rotated([angle, DEGREES_45, STRAIGHT]), space::moved_by(place)))
 }
 
-fn homogeneous([x, y, z]: [f32; 3]) -> [f64; 4] {
-    [f64::from(x), f64::from(y), f64::from(z), 1.0]
-}
-
-/// Transforms a vector and rounds it to single precision.
-fn through(vector: [f64; 4], matrix: &Matrix) -> [f64; 4] {
-    space::transform(vector, matrix).map(|value| f64::from(value as f32))
+fn homogeneous([x, y, z]: [f32; 3]) -> [f32; 4] {
+    [x, y, z, 1.0]
 }
 
 /// Draws the front faces of both cubes. `coordinates` returns the texture coordinates of a vertex, given its model, face and corner.
@@ -48,11 +43,7 @@ fn cubes(
 ) {
     canvas.frame_buffer().depth = Some(FAR_DEPTHS);
     for model in models() {
-        let position = |point| {
-            let seen = through(through(through(homogeneous(point), &model), &space::eye()), &space::window());
-            let [x, y, z, w] = seen.map(|value| value as f32);
-            [x / w, y / w, z / w, w]
-        };
+        let position = |point| space::programmed_by(&[model, space::eye(), space::window()], homogeneous(point));
         let mut vertices = Vec::new();
         for (face, points) in CUBE.into_iter().enumerate() {
             let corners = points.map(position);
@@ -102,28 +93,6 @@ fn radial() -> Texture {
     images::cube(TextureFormat::A8B8G8R8, 64, channels.map(face))
 }
 
-/// Returns the inverse of a matrix, computed in double precision.
-fn inverse(matrix: Matrix) -> Matrix {
-    let (mut left, mut right) = (matrix, space::IDENTITY);
-    for column in 0..4 {
-        let pivot = (column..4).max_by(|a, b| left[*a][column].abs().total_cmp(&left[*b][column].abs()));
-        let pivot = pivot.unwrap_or(column);
-        left.swap(column, pivot);
-        right.swap(column, pivot);
-        let by = left[column][column];
-        left[column] = left[column].map(|value| value / by);
-        right[column] = right[column].map(|value| value / by);
-        for row in (0..4).filter(|row| *row != column) {
-            let by = left[row][column];
-            for n in 0..4 {
-                left[row][n] -= by * left[column][n];
-                right[row][n] -= by * right[column][n];
-            }
-        }
-    }
-    right
-}
-
 /// The eye vector that the programs pass in q of the coordinates.
 #[derive(Clone, Copy)]
 enum Eye {
@@ -137,18 +106,16 @@ enum Eye {
 
 /// Returns the coordinates of a corner: its place in the normal map, then the rows of a matrix for three dot products, with the eye vector in q.
 fn surface(model: &Matrix, eye: Eye, [face, corner]: [usize; 2]) -> [[f32; 4]; TEXTURE_UNITS] {
-    let rows = inverse(space::product(space::product(*model, space::eye()), space::window()));
+    let rows = space::inverse(&space::product(space::product(*model, space::eye()), space::window()));
     let eye = match eye {
         Eye::Unread => [1.0; 3],
-        Eye::Along(axis) => axis.map(f64::from),
+        Eye::Along(axis) => axis,
         Eye::Vertex => {
-            let [x, y, z, _] = space::transform(homogeneous(CUBE[face][corner]), model);
-            let vector = [x, y, z + 7.0];
-            let length = vector.iter().map(|value| value * value).sum::<f64>().sqrt();
-            vector.map(|value| value / length)
+            let [x, y, z, _] = space::in_single(homogeneous(CUBE[face][corner]), model);
+            space::direction([x, y, z + space::DISTANCE as f32])
         }
     };
-    let row = |n: usize| [rows[n][0], rows[n][1], rows[n][2], eye[n]].map(|value| value as f32);
+    let row = |n: usize| [rows[n][0] as f32, rows[n][1] as f32, rows[n][2] as f32, eye[n]];
     [corners(UNFOLDED[face])[corner], row(0), row(1), row(2)]
 }
 

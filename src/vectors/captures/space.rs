@@ -15,9 +15,15 @@ const COTANGENT: f32 = 2.414_213_4;
 pub(super) const DISTANCE: f64 = 7.0;
 
 /// Returns a row vector times a matrix in single precision, as the programs compute it: products are added from left to right.
-fn in_single(vector: [f32; 4], matrix: &Matrix) -> [f32; 4] {
+pub(super) fn in_single(vector: [f32; 4], matrix: &Matrix) -> [f32; 4] {
     let term = |row: usize, column: usize| vector[row] * matrix[row][column] as f32;
     std::array::from_fn(|column| (1..4).fold(term(0, column), |sum, row| sum + term(row, column)))
+}
+
+/// Returns the unit vector of a direction in single precision, as the programs compute it.
+pub(super) fn direction([x, y, z]: [f32; 3]) -> [f32; 3] {
+    let reciprocal = 1.0 / (x * x + y * y + z * z).sqrt();
+    [x * reciprocal, y * reciprocal, z * reciprocal]
 }
 
 /// Returns the product of two matrices in single precision.
@@ -53,11 +59,6 @@ pub(super) fn unproject([x, y]: [f32; 2], z: f32, inverse: &Matrix) -> [f32; 4] 
 /// Returns the rows of a matrix for column vectors.
 pub(super) fn rows(matrix: &Matrix) -> [[f32; 4]; 4] {
     std::array::from_fn(|row| std::array::from_fn(|column| matrix[column][row] as f32))
-}
-
-/// Returns a row vector times a matrix.
-pub(super) fn transform(vector: [f64; 4], matrix: &Matrix) -> [f64; 4] {
-    std::array::from_fn(|column| (0..4).map(|row| vector[row] * matrix[row][column]).sum())
 }
 
 /// Returns a translation matrix.
@@ -122,7 +123,13 @@ pub(super) fn toward_zero(value: f64) -> f32 {
 
 /// Transforms a point of the world by the programs' vertex program, which multiplies by the reciprocal of w.
 pub(super) fn programmed(point: [f32; 4]) -> [f32; 4] {
-    unit::window(unit::transform(&rows(&product(eye(), window())), unit::words(point)), [0.0; 3])
+    programmed_by(&[product(eye(), window())], point)
+}
+
+/// The same with other matrices, one after the other.
+pub(super) fn programmed_by(matrices: &[Matrix], point: [f32; 4]) -> [f32; 4] {
+    let seen = matrices.iter().fold(unit::words(point), |vector, matrix| unit::transform(&rows(matrix), vector));
+    unit::window(seen, [0.0; 3])
 }
 
 /// Moves edges through the inverse of the programs' vertex program and back. Edges left of and above the centre end up a sixteenth of a pixel before
