@@ -185,6 +185,8 @@ fn reports_of_folders() {
     bench.run(&command("--results new -o new")).failed(2, "is no report");
     bench.run(&command("--results new --no-causes --at-least 0")).text();
     assert_eq!(bench.run(&command("--results new --no-causes --at-least 100")).status, 1);
+    let text = bench.run(&command("--results old --results new --no-causes --without CORR")).text();
+    assert!(text.contains("  1 frames: 0 exact"), "{text}");
     bench.run(&command("--results none")).failed(3, "NB0526");
     bench.run("score --results new").failed(2, "--captures");
 }

@@ -42,6 +42,9 @@ pub(crate) struct Arguments {
     /// Score this suite only; may be given several times
     #[arg(long = "suite", value_name = "SUITE")]
     suites: Vec<String>,
+    /// Leave out frames whose names contain this text, whatever its case; may be given several times
+    #[arg(long, value_name = "TEXT")]
+    without: Vec<String>,
     /// Write a report into this folder: `index.html` with pictures, `card.md` with its tables, `score.json`, `badge.svg`; an earlier report is replaced
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -73,6 +76,15 @@ const MOST_EXHIBITS: usize = 40;
 
 /// Causes that the text lists.
 const SHOWN: usize = 12;
+
+impl Arguments {
+    /// Returns whether a frame is scored.
+    fn wants(&self, suite: &str, name: &str) -> bool {
+        let name = name.to_lowercase();
+        let is_without = self.without.iter().any(|text| name.contains(&text.to_lowercase()));
+        (self.suites.is_empty() || self.suites.iter().any(|wanted| wanted == suite)) && !is_without
+    }
+}
 
 /// Runs the command.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
@@ -121,9 +133,7 @@ fn of_pack(place: &Path, arguments: &Arguments) -> Result<Vec<Run>, Failure> {
     let mut runs = Vec::new();
     for (n, folder) in arguments.results.iter().enumerate() {
         let mut answers = results::open(folder, &manifest)?;
-        answers
-            .units
-            .retain(|unit| arguments.suites.is_empty() || arguments.suites.iter().any(|name| name == unit.unit.name()));
+        answers.units.retain(|unit| arguments.wants(unit.unit.name(), &unit.asked[1]));
         let name = format!("{}, {}", shown::name(&answers.device.renderer), shown::name(&answers.device.version));
         let explain = n + 1 == arguments.results.len() && !arguments.no_causes;
         runs.push(of_answers(name, &tables, &answers, explain)?);
@@ -160,20 +170,18 @@ fn pictures(place: &Path) -> Result<Vec<Pictures>, Failure> {
 /// Returns the frames of the captures, and the folders of results.
 fn of_captures(captures: &Path, arguments: &Arguments) -> Result<(Vec<Subject>, Vec<Pictures>), Failure> {
     let chip = pictures(captures)?.swap_remove(0);
-    let is_wanted = |(suite, _): &&(String, String)| arguments.suites.is_empty() || arguments.suites.contains(suite);
+    let is_wanted = |(suite, name): &&(String, String)| arguments.wants(suite, name);
     let files: Vec<(String, String)> = chip.files.iter().filter(is_wanted).cloned().collect();
     if files.is_empty() {
-        return Err(Failure::usage("the captures have no such suite", "name a folder of the captures"));
+        let help = "name a folder of the captures as the suite, and leave out less";
+        return Err(Failure::usage("the captures have no such frames", help));
     }
     let subjects = captured(&chip.folder, &files).map_err(|unmatched| Failure::fault(&unmatched.to_string()))?;
     let mut sets = Vec::new();
     for place in &arguments.results {
         sets.extend(pictures(place)?);
     }
-    for set in &mut sets {
-        set.files.retain(|file| is_wanted(&file));
-    }
-    Ok((subjects, sets))
+    Ok((subjects, wanted(sets, arguments)))
 }
 
 /// Returns the scenes of a folder, and the folders of results.
@@ -186,7 +194,7 @@ fn of_scenes(scenes: &Path, arguments: &Arguments) -> Result<(Vec<Subject>, Vec<
         let below = entry.path.strip_prefix(scenes).unwrap_or(&entry.path);
         let text = |part: Option<&Path>| part.and_then(Path::to_str).unwrap_or_default().to_owned();
         let (suite, name) = (text(below.parent()), text(below.file_stem().map(Path::new)));
-        if arguments.suites.is_empty() || arguments.suites.contains(&suite) {
+        if arguments.wants(&suite, &name) {
             subjects.extend(of_scene(suite, name, loaded.scene));
         }
     }
@@ -194,7 +202,16 @@ fn of_scenes(scenes: &Path, arguments: &Arguments) -> Result<(Vec<Subject>, Vec<
         return Err(Failure::usage("there is no scene to score", "name a folder of scenes"));
     }
     let beside = |place: &PathBuf| ninebit_score::beside_scenes(place).map_err(|error| unreadable(place, &error));
-    Ok((subjects, arguments.results.iter().map(beside).collect::<Result<_, _>>()?))
+    let sets = arguments.results.iter().map(beside).collect::<Result<_, _>>()?;
+    Ok((subjects, wanted(sets, arguments)))
+}
+
+/// Returns folders without the pictures that are not scored.
+fn wanted(mut sets: Vec<Pictures>, arguments: &Arguments) -> Vec<Pictures> {
+    for set in &mut sets {
+        set.files.retain(|(suite, name)| arguments.wants(suite, name));
+    }
+    sets
 }
 
 /// Writes the files of a report.
