@@ -206,6 +206,11 @@ fn programs_are_printed_as_functions() {
     bench.run("lower --generic --to wgsl").failed(2, "no generic text");
     bench.run("lower --generic --to glsl -o vendor").failed(2, "stdout");
     bench.run("lower --generic lit.words --to c99").failed(2, "cannot be used with");
+    bench.run("lower lit-words-file.ron --whole --to glsl -o shaders").text();
+    assert!(fs::read_to_string(bench.path("shaders/draw0.vert")).unwrap().starts_with("#version 450\n"));
+    assert!(fs::read_to_string(bench.path("shaders/draw0.frag")).unwrap().contains("ninebit_draw0(ninebit_triangles"));
+    bench.run("lower lit-words-file.ron --whole --to c99 -o shaders").failed(2, "take `--to glsl`");
+    bench.run("lower lit.words --profile nv10 --to glsl -o shaders").failed(2, "--whole --to glsl");
     for (form, function) in
         [("c99", "static inline int ninebit_draw0("), ("glsl", "bool ninebit_draw0("), ("wgsl", "fn ninebit_draw0(")]
     {

@@ -141,9 +141,9 @@ fn long_names_and_formulas_do_not_move_the_numbers() {
     let long = "a.name.that.is.wider.than.any.column.may.become";
     let operands = (0..30).map(|n| plain(format!("operand{n}"), n)).collect();
     let steps = [
-        Step::given("block", "CMB-1", "short", 12),
-        Step::given("block", "CMB-1", long, 345).by("given", Vec::new()),
-        Step::given("block", "CMB-1", "sum", 6789).by("operation", operands),
+        Step::plain("block", "CMB-1", "short", 12),
+        Step::plain("block", "CMB-1", long, 345).by("given", Vec::new()),
+        Step::plain("block", "CMB-1", "sum", 6789).by("operation", operands),
     ];
     let text = ninebit_report::steps_text(&steps);
     let ends: Vec<usize> =

@@ -33,14 +33,14 @@ pub fn watch() {
 /// Remembers a file that has been or will be read. Other things than regular files, such as terminals, are ignored: they may be read and written.
 pub fn note(path: &Path) {
     if WATCHING.load(Ordering::Relaxed)
-        && let Some(place) = place(path)
+        && let Some(place) = canonical_path(path)
     {
         seen().read.entry(place).or_insert_with(|| path.to_path_buf());
     }
 }
 
 /// Returns the canonical path of a file, which need not exist; `None` for other things than regular files.
-fn place(path: &Path) -> Option<PathBuf> {
+fn canonical_path(path: &Path) -> Option<PathBuf> {
     match path.canonicalize() {
         Ok(place) => place.is_file().then_some(place),
         Err(_) => Some(folder_around(path).canonicalize().ok()?.join(path.file_name()?)),
@@ -75,7 +75,7 @@ pub fn check<'a>(outputs: impl IntoIterator<Item = &'a Path>) -> Result<(), Outp
     let seen = seen();
     let mut places = Vec::new();
     for path in outputs {
-        let Some(place) = place(path) else { continue };
+        let Some(place) = canonical_path(path) else { continue };
         seen.compare(&place, path)?;
         if places.contains(&place) {
             return Err(OutputError::Twice { path: path.to_path_buf() });
@@ -93,7 +93,7 @@ pub fn claim(path: &Path) -> Result<(), OutputError> {
     if !WATCHING.load(Ordering::Relaxed) {
         return Ok(());
     }
-    let Some(place) = place(path) else { return Ok(()) };
+    let Some(place) = canonical_path(path) else { return Ok(()) };
     let mut seen = seen();
     seen.compare(&place, path)?;
     seen.written.insert(place, path.to_path_buf());
@@ -110,7 +110,7 @@ mod tests {
         let at = |name: &str| folder.path().join(name);
         std::fs::write(at("read.png"), b"").expect("written");
         let mut seen = Seen::default();
-        let place = |path: &Path| place(path).expect("a place");
+        let place = |path: &Path| canonical_path(path).expect("a place");
         seen.read.insert(place(&at("read.png")), at("read.png"));
         seen.written.insert(place(&at("new.png")), at("new.png"));
         std::fs::create_dir(at("below")).expect("made");
@@ -128,6 +128,6 @@ mod tests {
             let refused = seen.compare(&place(&at("link.png")), &at("link.png"));
             assert!(matches!(refused, Err(OutputError::Input { .. })), "{refused:?}");
         }
-        assert_eq!(super::place(Path::new("/dev/null")), None);
+        assert_eq!(super::canonical_path(Path::new("/dev/null")), None);
     }
 }

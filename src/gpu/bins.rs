@@ -97,7 +97,7 @@ pub(crate) fn sorted(
         }
         let Some(bins) = all.last_mut() else { continue };
         let before = bins.entries.len();
-        bins.place(&place, &context, [columns, rows]);
+        bins.append_tiles(&place, &context, [columns, rows]);
         tiles += bins.entries.len() - before;
         if tiles > most {
             return None;
@@ -115,7 +115,7 @@ pub(crate) fn sorted(
 
 impl Bins {
     /// Appends the tiles of a triangle within a window.
-    fn place(&mut self, place: &Place<'_>, context: &TriangleContext<'_>, [columns, rows]: [(i64, i64); 2]) {
+    fn append_tiles(&mut self, place: &Place<'_>, context: &TriangleContext<'_>, [columns, rows]: [(i64, i64); 2]) {
         let (top, bottom) = (context.triangle.rows().0.max(rows.0), context.triangle.rows().1.min(rows.1));
         let across = place.size[0].div_euclid(SIDE) + i64::from(place.size[0] % SIDE > 0);
         let is_plain = context.triangle.figure() == Figure::Triangle && place.draw.polygon_stipple.is_none();

@@ -31,7 +31,7 @@ impl<'a> Called<'a> {
     }
 
     /// Returns the result of a line, which may be negative.
-    pub(crate) fn of(code: &'a Code, operand: Operand) -> Called<'a> {
+    pub(crate) fn from_line(code: &'a Code, operand: Operand) -> Called<'a> {
         Called::Of(code, operand, Sign::Any)
     }
 
@@ -163,9 +163,9 @@ impl<'a> weights::Number for Called<'a> {
         };
         let [[a, b], [c, d], [e, f]] = terms.map(|term| term.factors(code));
         if BITS == 24 {
-            return Called::of(code, call(code, Helper::Linear, &[a, b, terms[1].operand(code), e, f]));
+            return Called::from_line(code, call(code, Helper::Linear, &[a, b, terms[1].operand(code), e, f]));
         }
-        Called::of(code, call(code, Helper::Depth, &[a, b, c, d, e, f]))
+        Called::from_line(code, call(code, Helper::Depth, &[a, b, c, d, e, f]))
     }
     fn sum_of_edges(edges: [Called<'a>; 3]) -> Called<'a> {
         Called::of_helper(Helper::Sum, &edges, |of| Binary::sum_of_edges([of[0], of[1], of[2]]))

@@ -31,7 +31,7 @@ impl Helper {
                 code.make(Operation::Binary(mantissa.operand(), exponent.operand()))
             }
         };
-        let (lines, renamed) = code.kept(&[result]);
+        let (lines, renamed) = code.reachable(&[result]);
         (lines, renamed(result))
     }
 }

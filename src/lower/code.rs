@@ -34,7 +34,7 @@ pub(crate) struct Code {
 
 impl Code {
     /// Returns the lines on which `roots` depend, renumbered, and a function that maps operands to the new numbers.
-    pub(crate) fn kept(self, roots: &[Operand]) -> (Vec<Line>, impl Fn(Operand) -> Operand + use<>) {
+    pub(crate) fn reachable(self, roots: &[Operand]) -> (Vec<Line>, impl Fn(Operand) -> Operand + use<>) {
         let lines = self.lines.into_inner();
         let mut used = vec![false; lines.len()];
         let mut open: Vec<Operand> = roots.to_vec();
@@ -113,7 +113,7 @@ impl Code {
         let is_known = !matches!(operation.kind(), Kind::Binary)
             && !matches!(operation, Operation::Input(_) | Operation::Fetch(..));
         if is_known && operation.operands().iter().all(constant) {
-            return Operand::Constant(operation.of(|operand| value_of(&[], operand)));
+            return Operand::Constant(operation.result(|operand| value_of(&[], operand)));
         }
         let operation = match self.simpler(operation) {
             Ok(operand) => return operand,
@@ -350,7 +350,7 @@ pub fn run_changed(lines: &[Line], mut given: impl Given, mut change: impl FnMut
         let value = match line.operation {
             Operation::Input(input) => given.input(input),
             Operation::Fetch(unit, at) => given.word(unit, value_of(&values, at)).into(),
-            operation => operation.of(|operand| value_of(&values, operand)),
+            operation => operation.result(|operand| value_of(&values, operand)),
         };
         values.push(change(n, value));
     }

@@ -212,7 +212,7 @@ impl Helper {
     }
 
     /// Computes the result from operands, of which binary numbers are packed.
-    pub(crate) fn of(self, operands: [i64; 6]) -> i64 {
+    pub(crate) fn compute(self, operands: [i64; 6]) -> i64 {
         let given = self.parameters().iter().zip(operands).map(|((kind, _), value)| match kind {
             Kind::Binary => {
                 let (mantissa, exponent) = unpacked(value);

@@ -27,7 +27,7 @@ mod whole;
 
 pub use generic::{Generic, Sources};
 pub use input::{Input, Local, Weight};
-pub use language::{Draw, Language, Named};
+pub use language::{Draw, Language, Named, Shaders};
 pub use pixel::{Function, Options, Result, Textures};
 pub use setup::Setup;
 pub use triangle::{Attribute, Field, Part};

@@ -197,7 +197,7 @@ impl Operation {
     }
 
     /// Computes the result from the values of the operands. The result of an input is 0, since the caller knows it.
-    pub(crate) fn of(&self, value: impl Fn(Operand) -> i64) -> i64 {
+    pub(crate) fn result(&self, value: impl Fn(Operand) -> i64) -> i64 {
         match *self {
             Operation::Input(_) | Operation::Fetch(..) => 0,
             Operation::Add(a, b) => value(a) + value(b),
@@ -225,7 +225,7 @@ impl Operation {
             Operation::Binary(a, b) => packed(value(a), value(b)),
             Operation::Mantissa(a) => unpacked(value(a)).0,
             Operation::Exponent(a) => unpacked(value(a)).1,
-            Operation::Call(helper, operands) => helper.of(operands.map(value)),
+            Operation::Call(helper, operands) => helper.compute(operands.map(value)),
             Operation::Difference(a, b) => {
                 let [a, b] = [a, b].map(|operand| f32::from_bits(value(operand) as u32));
                 difference(a, b).to_bits().into()

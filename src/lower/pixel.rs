@@ -77,18 +77,18 @@ pub(crate) struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    pub(crate) fn given(&self, input: Input) -> Number<'a> {
+    pub(crate) fn input(&self, input: Input) -> Number<'a> {
         Number::new(self.code, self.code.input(input, input.range()))
     }
 
     fn channels(&self, input: impl Fn(usize) -> Input) -> [Number<'a>; 4] {
-        [0, 1, 2, 3].map(|channel| self.given(input(channel)))
+        [0, 1, 2, 3].map(|channel| self.input(input(channel)))
     }
 
     /// Returns constants of the draw, as inputs or as constants of the text.
     pub(crate) fn constants<const N: usize>(&self, bytes: [u8; N], input: impl Fn(usize) -> Input) -> [Number<'a>; N] {
         let uniform = self.options.uniform;
-        std::array::from_fn(|n| if uniform { self.given(input(n)) } else { Number::Constant(bytes[n].into()) })
+        std::array::from_fn(|n| if uniform { self.input(input(n)) } else { Number::Constant(bytes[n].into()) })
     }
 
     /// Returns the registers with all inputs that a pixel may have; `texture` returns those of a unit.
@@ -156,7 +156,7 @@ impl<'a> Builder<'a> {
     fn stored(&self, draw: &Draw, surface: SurfaceFormat, fragment: [Number<'a>; 4]) -> Result {
         let code = self.code;
         let test = self.alpha_test(draw, fragment);
-        let held = Word(self.given(Input::Destination));
+        let held = Word(self.input(Input::Destination));
         let word = self.word(draw, surface, fragment, held);
         match test.and_then(|test| code.decided(test)) {
             // Every fragment is dropped, whatever its alpha.
@@ -217,7 +217,7 @@ impl Function {
         let builder = Builder { code: &code, options: *options };
         let [r, g, b] = builder.constants(draw.fog.color, Input::FogColor);
         // CMB-13: without fog the factor is 1.
-        let factor = if draw.fog.enabled { builder.given(Input::Fog(3)) } else { Number::ONE };
+        let factor = if draw.fog.enabled { builder.input(Input::Fog(3)) } else { Number::ONE };
         let registers = builder.registers([r, g, b, factor], |n| {
             if is_idle(draw, n) {
                 return UNBOUND;
@@ -227,7 +227,7 @@ impl Function {
                 Some(unit) if options.textures == Textures::Words && planned.shader.is_none() && reads_words(unit) => {
                     let sampler = Sampler::new(unit);
                     let border = builder.constants(unit.state.border_color, |c| Input::BorderColor(n, c));
-                    sampler.register(border, &Given(n, |input| builder.given(input)), &code).0
+                    sampler.register(border, &Given(n, |input| builder.input(input)), &code).0
                 }
                 // Only signed channels, and results of texture shaders, can be negative.
                 Some(unit) if unit.state.signed == [false; 4] && planned.shader.is_none() => {
@@ -248,7 +248,7 @@ impl Function {
 
     /// Makes a function of the lines on which the result depends, renumbered.
     pub(crate) fn new(code: Code, result: Result, options: &Options) -> Function {
-        let (lines, renamed) = code.kept(&result.operands());
+        let (lines, renamed) = code.reachable(&result.operands());
         Function { lines, result: result.renamed(renamed), uniform: options.uniform }
     }
 

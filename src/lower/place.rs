@@ -173,7 +173,7 @@ impl<'a, 's, 'w> Unit<'a, 's, 'w> {
             let sign = of_x.or(is_x, of_y.or(is_y, of_z));
             let is_negated = !sign.is_zero();
             let number = number.negated().or(is_negated, number);
-            Called::of(code, code.make(Operation::Binary(number.mantissa.operand(), number.exponent.operand())))
+            Called::from_line(code, code.make(Operation::Binary(number.mantissa.operand(), number.exponent.operand())))
         })
     }
 

@@ -45,14 +45,14 @@ impl Setup {
         });
         let fields: BTreeSet<Field> = fields.chain(fields_of_coverage()).collect();
         let outputs: Vec<(Field, Operand)> = fields.into_iter().map(|field| (field, reader.field(field))).collect();
-        let (lines, renamed) = code.kept(&outputs.iter().map(|output| output.1).collect::<Vec<_>>());
+        let (lines, renamed) = code.reachable(&outputs.iter().map(|output| output.1).collect::<Vec<_>>());
         Setup { lines, outputs: outputs.into_iter().map(|(field, operand)| (field, renamed(operand))).collect() }
     }
 
     /// Computes the constants of a triangle, of which binary numbers are [packed](crate::code::packed).
     pub fn constants(&self, context: &TriangleContext<'_>) -> HashMap<Field, i64> {
         let values = run(&self.lines, |input| match input {
-            Input::Vertex(k, attribute) => attribute.of(context, k),
+            Input::Vertex(k, attribute) => attribute.value_of(context, k),
             _ => 0,
         });
         let mut constants: HashMap<Field, i64> =
@@ -74,7 +74,7 @@ impl Setup {
 
 impl Attribute {
     /// Returns what vertex `k` of a triangle has.
-    pub fn of(self, context: &TriangleContext<'_>, k: usize) -> i64 {
+    pub fn value_of(self, context: &TriangleContext<'_>, k: usize) -> i64 {
         let bits = |value: f32| i64::from(value.to_bits());
         let vertices = context.vertices();
         match self {
@@ -107,7 +107,7 @@ pub(crate) fn coverage() -> (Vec<Line>, Operand) {
         is_inside(e, !field(Field::Owns(k)).is_zero())
     });
     let covers = (inside[0] & inside[1] & inside[2]).number().operand();
-    let (lines, renamed) = code.kept(&[covers]);
+    let (lines, renamed) = code.reachable(&[covers]);
     (lines, renamed(covers))
 }
 
@@ -135,7 +135,7 @@ impl<'a> Reader<'a, '_> {
 
     /// Returns a binary32 number, of which bits are given.
     fn number(&self, bits: Number<'a>) -> Called<'a> {
-        Called::of(self.code, call(self.code, Helper::Split, &[bits.operand()]))
+        Called::from_line(self.code, call(self.code, Helper::Split, &[bits.operand()]))
     }
 
     fn difference(&self, a: Number<'a>, b: Number<'a>) -> Number<'a> {

@@ -136,7 +136,7 @@ impl<'t> Cursor<'t> {
     }
 
     /// Returns the current token for messages; after the last token, `end`.
-    pub(super) fn found(&self, end: &str) -> String {
+    pub(super) fn current_token(&self, end: &str) -> String {
         if self.is_done() { end.to_owned() } else { format!("`{}`", shorten(self.text_at(self.at))) }
     }
 }

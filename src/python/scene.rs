@@ -296,7 +296,7 @@ impl Scene {
             let color =
                 |pixel: &Option<[f64; 3]>| pixel.map_or([f64::NAN; 3], |color| color.map(|channel| 255.0 * channel));
             let truth: Vec<[f64; 3]> = accuracy.pictures.truth().iter().map(color).collect();
-            let shown = accuracy.pictures.shown().as_flattened().to_vec();
+            let shown = accuracy.pictures.pixels().as_flattened().to_vec();
             Ok((
                 accuracy_value(&accuracy).to_string(),
                 (accuracy.height, accuracy.width),

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use similar::{Algorithm, DiffTag, capture_diff_slices};
 
-use super::text::{expression, graded, held, legend};
+use super::text::{expression, graded, legend, step_value};
 use ninebit::engine::{DrawTrace, PixelTrace};
 use ninebit::shown;
 use ninebit::trace::Step;
@@ -58,7 +58,7 @@ fn draw_lines(lines: &mut Vec<SideBySideLine>, draw: &DrawTrace, first: &[Step],
             format!("{draw}{}", step.block)
         });
         block = Some(step.block.clone());
-        let side = |step: &Step| (expression(step), held(step));
+        let side = |step: &Step| (expression(step), step_value(step));
         let (name, first, second) = (step.name.clone(), a.map(side), b.map(side));
         lines.push(SideBySideLine { heading, name, rule: step.rule, first, second });
     };

@@ -125,7 +125,7 @@ fn write_steps<'o>(out: &mut String, steps: &[Step], origin: impl Fn(&str) -> Op
     let width =
         |f: fn(&(String, String)) -> usize, most: usize| lines.iter().map(f).filter(|w| *w <= most).max().unwrap_or(0);
     let (names, expressions) = (width(|l| l.0.chars().count(), 40), width(|l| l.1.chars().count(), 58));
-    let integers = steps.iter().map(|s| held(s).len()).max().unwrap_or(0).max(7);
+    let integers = steps.iter().map(|s| step_value(s).len()).max().unwrap_or(0).max(7);
     writeln!(
         out,
         "    {:names$}  {:expressions$}  {:>integers$} {:>10} {:>10}  rule",
@@ -154,7 +154,7 @@ fn write_steps<'o>(out: &mut String, steps: &[Step], origin: impl Fn(&str) -> Op
         }
         let line = format!(
             "    {name:names$}  {expression:expressions$}  {:>integers$} {real:>10} {ideal:>10}  {}",
-            held(step),
+            step_value(step),
             graded(step.rule)
         );
         match &step.note {
@@ -171,7 +171,7 @@ pub(super) fn integer(value: i64, per_one: i64) -> String {
 }
 
 /// Formats the integer of a step with its power of two, if it has one.
-pub(super) fn held(step: &Step) -> String {
+pub(super) fn step_value(step: &Step) -> String {
     powered(integer(step.value, step.per_one), step.exponent)
 }
 
@@ -180,7 +180,7 @@ fn powered(integer: String, exponent: i32) -> String {
 }
 
 /// Formats an operand of a formula: its integer, or the single-precision number.
-fn shown(operand: &Operand) -> String {
+fn operand_text(operand: &Operand) -> String {
     match operand.per_one {
         SINGLE => f32::from_bits(operand.value as u32).to_string(),
         _ => powered(operand.value.to_string(), operand.exponent),
@@ -189,7 +189,7 @@ fn shown(operand: &Operand) -> String {
 
 /// Returns the formula of a step with the integers of its operands.
 pub(super) fn expression(step: &Step) -> String {
-    let value = |n: usize| step.inputs.get(n).map_or(String::new(), shown);
+    let value = |n: usize| step.inputs.get(n).map_or(String::new(), operand_text);
     let pairs = |inputs: &[Operand]| {
         let products: Vec<String> =
             inputs.chunks(2).map(|p| format!("{} * {}", p[0].value, p[p.len() - 1].value)).collect();
@@ -288,7 +288,7 @@ pub(super) fn expression(step: &Step) -> String {
             format!("{}({})", step.inputs[0].name, channels.join(", "))
         }
         operation => {
-            let operands: Vec<String> = step.inputs.iter().map(|o| format!("{} {}", o.name, shown(o))).collect();
+            let operands: Vec<String> = step.inputs.iter().map(|o| format!("{} {}", o.name, operand_text(o))).collect();
             format!("{operation}({})", operands.join(", "))
         }
     }

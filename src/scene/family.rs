@@ -66,7 +66,7 @@ impl Family {
     }
 
     /// Turns a finding about the joined texts into one about the scene or about the family's file.
-    pub(super) fn place(&self, mut finding: Diagnostic, scene: &str) -> Diagnostic {
+    pub(super) fn locate(&self, mut finding: Diagnostic, scene: &str) -> Diagnostic {
         let start = scene.len() + 1;
         if let Some(file) = &finding.file {
             // The finding is about a third file, which the family names.

@@ -244,7 +244,7 @@ pub fn parse_changed(
     let found = lower::scene(&mut reader, &whole[..text.len()], shared);
     let (mut diagnostics, suppressed) = (reader.diagnostics, reader.suppressed);
     if let Some(family) = &family {
-        diagnostics = diagnostics.into_iter().map(|finding| family.place(finding, text)).collect();
+        diagnostics = diagnostics.into_iter().map(|finding| family.locate(finding, text)).collect();
     }
     diagnostics.sort_by_key(Diagnostic::order);
     match found {

@@ -49,13 +49,13 @@ impl Index {
     }
 
     /// Returns the place of the definition with this number.
-    pub(super) fn place(&self, number: usize) -> Span {
+    pub(super) fn span_of(&self, number: usize) -> Span {
         self.list.get(number).map(|known| known.place.clone()).unwrap_or_default()
     }
 
     /// Returns the place where a name is defined.
     pub(super) fn place_of(&self, name: &str) -> Option<Span> {
-        self.by_name.get(name)?.map(|number| self.place(number))
+        self.by_name.get(name)?.map(|number| self.span_of(number))
     }
 
     /// Makes the finding that a name is not defined.

@@ -36,7 +36,7 @@ pub enum VectorError {
         limit: FileLimit,
     },
     /// The content of a file is not valid.
-    #[error("{}: {message}", place(path, *line))]
+    #[error("{}: {message}", location(path, *line))]
     Invalid {
         /// Error code, as `docs/errors.md` lists it.
         code: &'static str,
@@ -54,7 +54,7 @@ pub enum VectorError {
     Output(#[from] OutputError),
 }
 
-fn place(path: &Path, line: usize) -> String {
+fn location(path: &Path, line: usize) -> String {
     if line == 0 {
         format!("`{}`", ninebit::shown::path(path))
     } else {

@@ -88,7 +88,7 @@ fn seal(header: &SweepHeader, leaf: &Leaf) -> String {
 }
 
 /// Returns the path of a leaf's file.
-fn place(folder: &Path, index: u64) -> PathBuf {
+fn leaf_path(folder: &Path, index: u64) -> PathBuf {
     folder.join(format!("leaf-{index:04}.json"))
 }
 
@@ -105,7 +105,7 @@ fn read_leaf(path: &Path) -> Result<Option<(SweepHeader, Leaf)>, VectorError> {
 /// # Errors
 /// Returns an error if the folder has that leaf of another sweep, or cannot be written.
 pub fn work(folder: &Path, sweep: &Exhaustive, index: u64) -> Result<bool, VectorError> {
-    let (path, header) = (place(folder, index), SweepHeader::new(sweep));
+    let (path, header) = (leaf_path(folder, index), SweepHeader::new(sweep));
     if path.exists()
         && let Ok(Some((found, leaf))) = read_leaf(&path)
     {
@@ -178,12 +178,12 @@ pub fn merge(folders: &[PathBuf]) -> Result<Tree, VectorError> {
     let Some((header, path)) = first else {
         let folder = folders.first().map(PathBuf::as_path).unwrap_or(Path::new("."));
         let help = "no leaves lie there: `ninebit vectors sweep` writes them";
-        return Err(VectorError::missing(place(folder, 0), help));
+        return Err(VectorError::missing(leaf_path(folder, 0), help));
     };
     if let Some(gap) = (0..header.leaves).find(|index| !found.contains_key(index)) {
         let folder = path.parent().unwrap_or(Path::new("."));
         let help = "not all leaves are there: run the missing shards again, what is there is kept";
-        return Err(VectorError::missing(place(folder, gap), help));
+        return Err(VectorError::missing(leaf_path(folder, gap), help));
     }
     let leaf: Vec<Leaf> = found.into_values().map(|(leaf, _)| leaf).collect();
     let rows = leaf.iter().map(|leaf| leaf.rows).sum();

@@ -113,7 +113,7 @@ impl Session {
             "heat" => {
                 let (target, against) = (self.target(number("target")?)?, &request["against"]);
                 self.step(number("until").ok())?;
-                let plan = self.shown(number("until").ok())?;
+                let plan = self.plan_until(number("until").ok())?;
                 if against.as_str() == Some("ideal") && !self.shortcuts.is_empty() {
                     return Err("float64 is compared with the chip's rules, without shortcuts".to_owned());
                 }
@@ -211,7 +211,7 @@ impl Session {
     /// Returns the plan of all draws, or of those up to `until`.
     fn plan(&mut self, until: Option<usize>) -> Result<&Plan, Refused> {
         self.step(until)?;
-        self.shown(until)
+        self.plan_until(until)
     }
 
     fn step(&mut self, until: Option<usize>) -> Result<(), Refused> {
@@ -223,7 +223,7 @@ impl Session {
         Ok(())
     }
 
-    fn shown(&self, until: Option<usize>) -> Result<&Plan, Refused> {
+    fn plan_until(&self, until: Option<usize>) -> Result<&Plan, Refused> {
         let (_, whole) = self.loaded()?;
         Ok(self.stepped.as_ref().filter(|(at, _)| Some(*at) == until).map_or(whole, |(_, plan)| plan))
     }

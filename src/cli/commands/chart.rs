@@ -181,7 +181,7 @@ fn speed(arguments: &Arguments, times: Option<Times>, context: Context) -> Resul
     let mut measured = Measurements { isa, quick: arguments.quick, ..Measurements::default() };
     for entry in &entries {
         let technique = isolated(&entry.path, || {
-            let known = times.as_ref().map(|times| times.of(entry));
+            let known = times.as_ref().map(|times| times.spread_of(entry));
             let spread = known.as_ref().and_then(|known| known.as_ref().ok().copied());
             match (techniques::measure(entry, &effort, spread).map_err(technique_failure)?, known) {
                 (Some(_), Some(Err(reason))) => Err(Failure::invalid("NB0537", reason, TIMES_HELP)),

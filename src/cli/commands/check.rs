@@ -18,7 +18,7 @@ pub(crate) struct Arguments {
 /// Checks and plans a scene and prints its cost.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let (scene, plan) = arguments.scene.load(context)?;
-    let (cost, shaded) = (Cost::from_scene(&scene), Shaded::of(engine::shaded(&plan)));
+    let (cost, shaded) = (Cost::from_scene(&scene), Shaded::from_draws(engine::shaded(&plan)));
     let value = || {
         let Shaded { pixels, exact, seconds } = shaded;
         let shaded = json!({ "pixels": pixels, "exact": exact, "estimated_seconds": seconds });

@@ -5,7 +5,7 @@ use super::*;
 use ninebit::plan::PlanOptions;
 use ninebit::state::Named as _;
 use ninebit_files::output::write_below;
-use ninebit_lower::{self as lower, Function, Generic, Language, Named, Options, Setup, Sources, Textures};
+use ninebit_lower::{self as lower, Function, Generic, Language, Named, Options, Setup, Shaders, Sources, Textures};
 use ninebit_program::{registers, text};
 use ninebit_scene::register_words;
 
@@ -19,8 +19,8 @@ pub(crate) struct Arguments {
     /// C99, GLSL: one text for every program, which reads the words of the registers of `--profile` while it runs; Verilog: a module for each step of a pixel
     #[arg(long, conflicts_with_all = ["source", "language", "draw", "uniform", "textures", "fragment"])]
     generic: bool,
-    /// With `--generic --to c99`: write ninebit_combiners.h and ninebit_combiners.c to this folder; without it, one text of both goes to stdout
-    #[arg(short, long, value_name = "FOLDER", requires = "generic")]
+    /// With `--generic --to c99`: write ninebit_combiners.h and ninebit_combiners.c to this folder; without it, one text of both goes to stdout. With `--whole --to glsl`: write a vertex and a fragment shader for each draw, drawN.vert and drawN.frag
+    #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
     #[command(flatten)]
     program: ProgramArguments,
@@ -91,8 +91,14 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let alone = arguments.program.language(path).is_some();
     let scene = arguments.program.scene(path, &arguments.state, context)?;
     let draws = chosen_draws(&scene, arguments.draw)?;
+    if arguments.whole {
+        return whole(arguments, path, &scene, &draws, alone);
+    }
+    if arguments.output.is_some() {
+        let help = "leave `--output` out and take the text from stdout, or add `--whole --to glsl`";
+        return Err(Failure::usage("`--output` is for texts of several files".to_string(), help));
+    }
     let out = match arguments.to.language() {
-        _ if arguments.whole => whole(arguments, path, &scene, &draws, alone)?,
         Some(language) => functions(arguments, path, language, &scene, &draws, alone)?,
         None => programs(arguments, &scene, &draws, alone),
     };
@@ -147,14 +153,14 @@ fn programs(arguments: &Arguments, scene: &Scene, draws: &[(usize, &Draw)], alon
     out
 }
 
-/// Returns draws as functions of whole pixels.
+/// Prints draws as functions of whole pixels, or writes shaders.
 fn whole(
     arguments: &Arguments,
     path: &Path,
     scene: &Scene,
     draws: &[(usize, &Draw)],
     alone: bool,
-) -> Result<String, Failure> {
+) -> Result<(), Failure> {
     if alone {
         return Err(Failure::usage(
             format!("{} is a program alone, which has no pixels", shown::path(path)),
@@ -190,12 +196,29 @@ fn whole(
             setup,
         })
         .collect();
-    arguments.to.language().and_then(|language| language.print_whole(&drawn)).ok_or_else(|| {
-        Failure::usage(
-            "whole pixels are not printed in this form".to_string(),
-            "take `--to c99`, `--to glsl` or `--to wgsl`",
-        )
-    })
+    match (arguments.to, &arguments.output) {
+        (Form::Glsl, Some(folder)) => {
+            for ((number, ..), draw) in made.iter().zip(&drawn) {
+                let Shaders { vertex, fragment } = Shaders::new(draw);
+                write_below(&folder.join(format!("draw{number}.vert")), vertex.as_bytes())?;
+                write_below(&folder.join(format!("draw{number}.frag")), fragment.as_bytes())?;
+            }
+            Ok(())
+        }
+        (_, Some(_)) => Err(Failure::usage(
+            "`--output` is for the shaders of GLSL".to_string(),
+            "leave `--output` out and take the text from stdout, or take `--to glsl`",
+        )),
+        (form, None) => {
+            let text = form.language().and_then(|language| language.print_whole(&drawn)).ok_or_else(|| {
+                Failure::usage(
+                    "whole pixels are not printed in this form".to_string(),
+                    "take `--to c99`, `--to glsl` or `--to wgsl`",
+                )
+            })?;
+            Ok(write_text(&text)?)
+        }
+    }
 }
 
 fn compiled(scene: &Scene, options: PlanOptions) -> Result<Plan, Failure> {

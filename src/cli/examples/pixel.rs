@@ -9,7 +9,7 @@ fn main() {
     let halves = halves.a(FinalRegister::ConstantColor0.rgb()).b(FinalRegister::PrimaryColor.rgb());
     let combiners = Combiners { final_combiner: halves, ..Combiners::default() };
     let vertices = vec![Vertex::at(0.0, 0.0), Vertex::at(2.0, 0.0), Vertex::at(0.0, 2.0)];
-    let draw = Draw { combiners, ..Draw::of(vertices) };
+    let draw = Draw { combiners, ..Draw::from_vertices(vertices) };
     let targets = vec![Target::new(1, 1, SurfaceFormat::A8R8G8B8)];
     let scene = Scene { profile: Profile::Nv2a, targets, draws: vec![draw], ..Scene::default() };
     let plan = Plan::compile(&scene, &PlanOptions::default()).expect("within the limits");

@@ -47,7 +47,7 @@ pub(super) fn replay(entry: &Entry, options: &Options) -> Replayed {
 }
 
 /// Returns the path of a scene's file in a folder of artifacts.
-fn place(folder: &Path, name: &str, extension: &str) -> PathBuf {
+fn artifact_path(folder: &Path, name: &str, extension: &str) -> PathBuf {
     folder.join(format!("{name}.{extension}"))
 }
 
@@ -62,7 +62,7 @@ fn write_artifacts(replayed: &mut Replayed, folder: &Path) {
         files.push(("difference.png", known.panels.clone()));
     }
     for (extension, bytes) in files {
-        if let Err(error) = write_below(&place(folder, &replayed.name, extension), &bytes) {
+        if let Err(error) = write_below(&artifact_path(folder, &replayed.name, extension), &bytes) {
             replayed.unwritten.push(unwritten(error));
         }
     }
@@ -103,7 +103,7 @@ fn draw(entry: &Entry, options: &Options, unwritten_files: &mut Vec<Problem>) ->
     let surface = engine::render(&plan, &render).surfaces.swap_remove(target);
     if let Some(pictures) = &options.pictures
         && let Err(error) = png(surface.width, surface.height, &surface.rgba8())
-            .and_then(|png| write_below(&place(pictures, &entry.name, "png"), &png))
+            .and_then(|png| write_below(&artifact_path(pictures, &entry.name, "png"), &png))
     {
         unwritten_files.push(unwritten(error));
     }
@@ -201,7 +201,7 @@ impl Subject<'_> {
         }
         difference.cause = found.as_ref().map(|found| found.cause);
         if let Some((picture, origin)) = expected {
-            difference.known = self.known(&picture, origin, &drawn, found.as_ref())?;
+            difference.known = self.compare_known(&picture, origin, &drawn, found.as_ref())?;
         }
         Ok(())
     }
@@ -212,7 +212,7 @@ impl Subject<'_> {
         let file =
             |name: &String| (self.folder.join(name), expectation.image(self.folder, name).map_err(|e| e.to_string()));
         let earlier = self.options.expected.as_ref().map(|folder| {
-            let path = place(folder, &self.entry.name, "png");
+            let path = artifact_path(folder, &self.entry.name, "png");
             let image = image::load(&path, &ImageLimits::default()).map_err(|error| error.to_string());
             (path, image)
         });
@@ -236,7 +236,7 @@ impl Subject<'_> {
     }
 
     /// Compares both pictures. Returns `None` if they are equal.
-    fn known(
+    fn compare_known(
         &self,
         expected: &Rgba,
         origin: Origin,

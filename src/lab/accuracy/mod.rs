@@ -90,7 +90,7 @@ pub struct Pictures {
 
 impl Pictures {
     /// Returns R, G, B, A of the picture, row by row from the top.
-    pub fn shown(&self) -> &[[u8; 4]] {
+    pub fn pixels(&self) -> &[[u8; 4]] {
         &self.shown
     }
 
@@ -106,7 +106,7 @@ pub fn measure(scene: &Scene, plan: &Plan, truth: &Truth) -> Option<Accuracy> {
     let ideal = evaluate(&visible, |_| None);
     let options = CompareOptions { mode: Mode::Follow, target: TARGET, threads: 0, channels: COLORS };
     let technique = compare(plan, &options);
-    let shown = shown(plan);
+    let shown = draw_pixels(plan);
     let measured: Vec<usize> = (0..ideal.pixels.len())
         .filter(|at| ideal.pixels[*at].is_some() && technique.errors[*at][0].is_finite())
         .collect();
@@ -173,8 +173,8 @@ fn causes(inputs: Option<Statistics>, method: Statistics, technique: &Comparison
 }
 
 /// Draws the picture. Returns R, G, B, A of each pixel.
-fn shown(plan: &Plan) -> Vec<[u8; 4]> {
+fn draw_pixels(plan: &Plan) -> Vec<[u8; 4]> {
     let frames = ninebit::engine::render(plan, &ninebit::engine::RenderOptions::default());
     let words = frames.surfaces.get(TARGET).map_or(&[][..], |surface| &surface.words);
-    words.iter().map(|word| surface::kept(plan.targets()[TARGET].format, *word)).collect()
+    words.iter().map(|word| surface::final_channels(plan.targets()[TARGET].format, *word)).collect()
 }

@@ -79,7 +79,7 @@ fn of_register(scene: &Scene, plan: &Plan, truth: &Truth, space: Space, register
     };
     let options = CompareOptions { mode: Mode::Follow, target: TARGET, threads: 0, channels: COLORS };
     let comparison = compare(&probe, &options);
-    let shown = super::shown(&probe);
+    let shown = super::draw_pixels(&probe);
     let drawn = |at: usize| comparison.errors[at][0].is_finite();
     let zero = match plan.policies.expand_centre {
         ExpandCentre::Centred => 128.0,

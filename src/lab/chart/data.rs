@@ -178,7 +178,7 @@ impl Times {
     ///
     /// # Errors
     /// Returns a message if the document has none.
-    pub fn of(&self, entry: &Entry) -> Result<Spread, String> {
+    pub fn spread_of(&self, entry: &Entry) -> Result<Spread, String> {
         let is = |time: &&TechniqueTime| {
             (&time.family, &time.technique, time.parameter) == (&entry.family, &entry.technique, entry.parameter)
         };

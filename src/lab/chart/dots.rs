@@ -35,7 +35,7 @@ struct Group<'a> {
 /// Returns the chart of one light: all its methods, with their Pareto front marked.
 pub(super) fn of_light(light: &Light<'_>) -> Canvas {
     let front = light.front_by_counts();
-    let rows = light.shown().iter().enumerate().map(|(n, way)| (*way, front.contains(&n))).collect();
+    let rows = light.techniques().iter().enumerate().map(|(n, way)| (*way, front.contains(&n))).collect();
     let other = "another way is as exact, and costs no more of anything";
     chart(&light.title, "", other, &[Group { heading: None, rows }])
 }
@@ -46,9 +46,9 @@ pub(super) fn overview(lights: &[&Light<'_>]) -> Canvas {
         .iter()
         .map(|light| {
             let front = light.front_by_counts();
-            let last = light.shown().len().saturating_sub(1);
+            let last = light.techniques().len().saturating_sub(1);
             let kept = |n: &usize| front.contains(n) || *n == last;
-            let rows = (0..=last).filter(kept).filter_map(|n| Some((*light.shown().get(n)?, front.contains(&n))));
+            let rows = (0..=last).filter(kept).filter_map(|n| Some((*light.techniques().get(n)?, front.contains(&n))));
             Group { heading: Some(&light.title), rows: rows.collect() }
         })
         .collect();

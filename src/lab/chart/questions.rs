@@ -82,7 +82,7 @@ pub(super) fn lights<'a>(techniques: &'a [Technique], title: impl Fn(&str) -> St
 
 impl<'a> Light<'a> {
     /// Returns the techniques that a chart shows.
-    pub(super) fn shown(&self) -> &[&'a Technique] {
+    pub(super) fn techniques(&self) -> &[&'a Technique] {
         &self.ways[..self.ways.len().min(MAX_SHOWN)]
     }
 
@@ -92,7 +92,7 @@ impl<'a> Light<'a> {
             let cost = &way.accuracy.cost.asked;
             [way.rms(), cost.passes as f64, cost.stages, cost.fetches, cost.blends]
         };
-        pareto_front(&self.shown().iter().map(point).collect::<Vec<_>>())
+        pareto_front(&self.techniques().iter().map(point).collect::<Vec<_>>())
     }
 
     /// Returns the technique of the given name.

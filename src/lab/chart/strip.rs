@@ -24,7 +24,7 @@ const LEGEND: &str = "Below each picture its error: red is too bright, blue too 
 
 /// Returns the strip of a light: the truth, then its techniques from the most accurate on.
 pub(super) fn of_light(light: &Light<'_>) -> Canvas {
-    let ways = light.shown();
+    let ways = light.techniques();
     // Rows of about the same length: none ends with a single picture.
     let rows = (ways.len() + 1).div_ceil(MOST_ACROSS);
     let across = (ways.len() + 1).div_ceil(rows);
@@ -42,7 +42,7 @@ pub(super) fn of_light(light: &Light<'_>) -> Canvas {
     for (n, way) in ways.iter().enumerate() {
         let [x, y] = place(n + 1);
         caption(&mut canvas, [x, y], &way.title, &format!("{} rms", number(way.rms())));
-        canvas.image(tile(x, y + CAPTION), image(&way.accuracy.pictures, shown));
+        canvas.image(tile(x, y + CAPTION), image(&way.accuracy.pictures, pixel_color));
         canvas.image(tile(x, y + CAPTION + TILE + 4.0), image(&way.accuracy.pictures, error));
     }
     canvas
@@ -81,7 +81,7 @@ fn image(pictures: &Pictures, of: fn(&Pictures, usize) -> [u8; 3]) -> Image {
 /// Colour of pixels without a truth, on which dark edges stand out.
 const GROUND: [u8; 3] = [150, 158, 168];
 
-fn shown(pictures: &Pictures, at: usize) -> [u8; 3] {
+fn pixel_color(pictures: &Pictures, at: usize) -> [u8; 3] {
     let [r, g, b, _] = pictures.shown[at];
     if pictures.truth[at].is_some() { [r, g, b] } else { GROUND }
 }

@@ -13,7 +13,7 @@ pub(super) fn experiment() -> Experiment {
     let method = |name: &str, parts: usize| {
         Method::new(name, [0.1, 8.0], move |extent| {
             largest_error(picture(extent, parts), 0, |at| {
-                pow(half_vector(place(at, extent))[1], f64::from(1 << SQUARINGS))
+                pow(half_vector(floor_x(at, extent))[1], f64::from(1 << SQUARINGS))
             })
         })
     };
@@ -28,7 +28,7 @@ pub(super) fn experiment() -> Experiment {
 }
 
 /// Converts a position on the strip (0 to 1) to x on the floor.
-fn place(at: f64, extent: f64) -> f64 {
+fn floor_x(at: f64, extent: f64) -> f64 {
     extent * (at - 0.5)
 }
 
@@ -46,7 +46,7 @@ fn picture(extent: f64, parts: usize) -> Pixels {
     let vertices = (0..parts).flat_map(|part| {
         let ends = [part, part + 1].map(|n| n as f64 / parts as f64);
         let vectors = ends.map(|at| {
-            let [x, z] = half_vector(place(at, extent));
+            let [x, z] = half_vector(floor_x(at, extent));
             pointing([x, 0.0, z])
         });
         quad(ends.map(|at| at * WIDTH as f64), vectors)

@@ -215,7 +215,7 @@ fn steps(low: f64, high: f64, count: usize) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    fn found(scale: Scale, works: f64, fails: f64, measure: fn(f64) -> f64) -> Threshold {
+    fn search(scale: Scale, works: f64, fails: f64, measure: fn(f64) -> f64) -> Threshold {
         let method =
             Method::new("", [works, fails], move |value| Ok(Outcome { error: measure(value), ..Outcome::default() }));
         let experiment = Experiment::new("", "").moving("", scale, Vec::new()).measuring("", 4.0).by([method]);
@@ -225,11 +225,11 @@ mod tests {
     #[test]
     fn halving_finds_the_place() {
         let between = |works, fails| Threshold::Between { works, fails };
-        assert_eq!(found(Scale::Whole, 0.0, 100.0, |v| v / 3.0), between(12.0, 13.0));
-        assert_eq!(found(Scale::Whole, 100.0, -7.0, |v| 20.0 - v), between(16.0, 15.0));
-        assert_eq!(found(Scale::Doubling, 1.0, 1024.0, |v| v / 10.0), between(32.0, 64.0));
-        assert_eq!(found(Scale::Real(0.25), 0.0, 8.0, |v| v), between(4.0, 4.25));
-        assert_eq!(found(Scale::Whole, 0.0, 4.0, |v| v), Threshold::Holds);
-        assert_eq!(found(Scale::Whole, 5.0, 9.0, |v| v), Threshold::Fails);
+        assert_eq!(search(Scale::Whole, 0.0, 100.0, |v| v / 3.0), between(12.0, 13.0));
+        assert_eq!(search(Scale::Whole, 100.0, -7.0, |v| 20.0 - v), between(16.0, 15.0));
+        assert_eq!(search(Scale::Doubling, 1.0, 1024.0, |v| v / 10.0), between(32.0, 64.0));
+        assert_eq!(search(Scale::Real(0.25), 0.0, 8.0, |v| v), between(4.0, 4.25));
+        assert_eq!(search(Scale::Whole, 0.0, 4.0, |v| v), Threshold::Holds);
+        assert_eq!(search(Scale::Whole, 5.0, 9.0, |v| v), Threshold::Fails);
     }
 }

@@ -21,7 +21,7 @@ pub(super) fn verilog(generic: &Generic) -> String {
 }
 
 /// Returns the local inputs of a case, in the order in which it reads them.
-fn given(case: &Case) -> impl Iterator<Item = Local> {
+fn locals(case: &Case) -> impl Iterator<Item = Local> {
     case.lines.iter().filter_map(|line| match line.operation {
         Operation::Input(crate::Input::Local(local)) => Some(local),
         _ => None,
@@ -34,7 +34,7 @@ fn module(piece: &Piece) -> String {
     // Each value of an array has a port.
     let result = |n: usize| array.map_or_else(|| "result".to_string(), |array| format!("{array}{n}"));
     let results = piece.cases.first().map_or(0, |case| case.results.len());
-    let locals: BTreeSet<Local> = piece.cases.iter().flat_map(given).collect();
+    let locals: BTreeSet<Local> = piece.cases.iter().flat_map(locals).collect();
     let most = piece.cases.iter().map(|case| case.value).max().unwrap_or(0);
     let bits = 32 - most.leading_zeros().min(31);
     let mut ports: Vec<String> = piece.chooses.iter().map(|name| format!("input [{}:0] {name}", bits - 1)).collect();

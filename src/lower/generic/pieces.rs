@@ -87,12 +87,12 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    fn given(&self, name: &'static str, range: Range) -> Number<'a> {
+    fn local(&self, name: &'static str, range: Range) -> Number<'a> {
         Number::new(self.code, self.code.input(Input::Local(Local { name, kind: Kind::Number, range }), range))
     }
 
     fn all<const N: usize>(&self, names: [&'static str; N], range: Range) -> [Number<'a>; N] {
-        names.map(|name| self.given(name, range))
+        names.map(|name| self.local(name, range))
     }
 
     fn word(&self, name: &'static str) -> Word<'a> {
@@ -140,7 +140,7 @@ impl Maker {
         let results: Vec<Operand> =
             of(&mut Reader { code: &code, listing, halvings }).into_iter().map(Number::operand).collect();
         let range = enclosing(results.iter().map(|result| code.range(*result)));
-        let (lines, renamed) = code.kept(&results);
+        let (lines, renamed) = code.reachable(&results);
         Case { value, name: name.to_string(), lines, results: results.into_iter().map(renamed).collect(), range }
     }
 
@@ -193,7 +193,7 @@ fn combiners(maker: &Maker) -> Vec<Piece> {
     });
     let mapped = |x: &'static str| {
         let number = |mapping: InputMapping| mapping as u32;
-        maker.cases(number, |reader, mapping| vec![reader.mapped(mapping, reader.given(x, REGISTER))])
+        maker.cases(number, |reader, mapping| vec![reader.mapped(mapping, reader.local(x, REGISTER))])
     };
     let factor = range(&mapped("x"));
     let products = maker.flagged(["a product of each channel", "a dot product, the same in each"], |reader, is_dot| {
@@ -202,7 +202,7 @@ fn combiners(maker: &Maker) -> Vec<Piece> {
         sums.map(|sum| reader.sum(sum)).to_vec()
     });
     let product = maker.case(0, "", |reader| {
-        let [x, y] = ["a", "b"].map(|name| [reader.factor(reader.given(name, factor))]);
+        let [x, y] = ["a", "b"].map(|name| [reader.factor(reader.local(name, factor))]);
         let [sum] = general::product(Site::product(0, 3), false, &x, &y, &mut reader.listing);
         vec![reader.sum(sum)]
     });
@@ -210,14 +210,14 @@ fn combiners(maker: &Maker) -> Vec<Piece> {
     let takes_cd = maker.cases(
         |select: MuxSelect| (select == MuxSelect::Msb).into(),
         |reader, select| {
-            let alpha = reader.given("spare0_alpha", REGISTER);
+            let alpha = reader.local("spare0_alpha", REGISTER);
             let test = reader.listing.choice(select, alpha);
             vec![reader.holds(test)]
         },
     );
     let third = maker.flagged(["the sum", "the mux"], |reader, mux| {
         let [ab, cd] = reader.all(["ab", "cd"], full).map(|value| Sum { value, halvings: reader.halvings });
-        let takes_cd = reader.given("takes_cd", (0, 1)).compared(CompareFunction::NotEqual, Number::ZERO);
+        let takes_cd = reader.local("takes_cd", (0, 1)).compared(CompareFunction::NotEqual, Number::ZERO);
         let third = general::third(mux, takes_cd, ab, cd, &mut reader.listing);
         vec![reader.sum(third)]
     });
@@ -227,7 +227,7 @@ fn combiners(maker: &Maker) -> Vec<Piece> {
         let case = |(value, bias, scale): &(u32, Bias, Scale)| {
             maker.case(*value, &format!("{}, {}", bias.name(), scale.name()), |reader| {
                 let portion = Portion { bias: *bias, scale: *scale, ..Portion::idle(Component::Rgb) };
-                let sum = Sum { value: reader.given(sum, sums), halvings: reader.halvings };
+                let sum = Sum { value: reader.local(sum, sums), halvings: reader.halvings };
                 vec![general::output(&portion, sum, &mut reader.listing)]
             })
         };
@@ -235,7 +235,7 @@ fn combiners(maker: &Maker) -> Vec<Piece> {
     };
     let invert = |x: &'static str| {
         maker.flagged(["as it is", "inverted"], |reader, inverted| {
-            vec![final_combiner::input(reader.given(x, (REGISTER.0, FINAL.1)), inverted, &mut reader.listing)]
+            vec![final_combiner::input(reader.local(x, (REGISTER.0, FINAL.1)), inverted, &mut reader.listing)]
         })
     };
     let color_sum = maker.flagged(["as it is", "limited to one"], |reader, color_sum_clamp| {

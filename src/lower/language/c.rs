@@ -214,18 +214,19 @@ struct ninebit_vertex {
     uint32_t fog;              /* binary32: d', e, or a factor within 0 and 1 (INT-5n) */
 };
 
-/* Constants of a triangle. Numbers of vertices are that of the second, and the differences of the first and the third from it. */
+/* Constants of a triangle. Numbers of vertices are that of the second, and the differences of the first and the third from it. The buffers of printed
+   shaders have the same layout. */
 struct ninebit_triangle {
     int32_t edge_x[3], edge_y[3];  /* slopes of the edge functions, in 1/256 square pixel */
     int64_t edge[3];               /* the edge functions at the centre of pixel (0, 0) */
-    int32_t owns[3];               /* 1 where pixels exactly on the edge belong to the triangle (RAS-3) */
     struct ninebit_binary ratio[3];
-    int32_t color[2][4][3];        /* diffuse and specular: channel, vertex */
     struct ninebit_binary coordinate[4][4][3];
     struct ninebit_binary fog[3];
-    int32_t fog_byte;              /* the fog of all pixels, or -1 (FOG-5) */
     struct ninebit_binary depth[3], depth_difference[3][3];
     int64_t offset;                /* of depths, times 2^offset_exponent (DEP-5): of whoever draws */
+    int32_t color[2][4][3];        /* diffuse and specular: channel, vertex */
+    int32_t owns[3];               /* 1 where pixels exactly on the edge belong to the triangle (RAS-3) */
+    int32_t fog_byte;              /* the fog of all pixels, or -1 (FOG-5) */
     int32_t offset_exponent;
 };
 

@@ -3,6 +3,7 @@
 
 mod c;
 mod glsl;
+mod pair;
 mod shader;
 mod verilog;
 mod wgsl;
@@ -20,6 +21,7 @@ use crate::helper::Helper;
 use crate::input::Input;
 use crate::kind::is_wide;
 use crate::pixel::{Function, Result};
+pub use pair::Shaders;
 pub use whole::Draw;
 pub(crate) use wide::Wide;
 use wide::wide_operation;

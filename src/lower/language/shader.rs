@@ -14,15 +14,15 @@ struct NinebitTriangle {
     edge_x: array<i32, 3>,
     edge_y: array<i32, 3>,
     edge: array<vec2<u32>, 3>,
-    owns: array<i32, 3>,
     ratio: array<vec2<i32>, 3>,
-    color: array<array<array<i32, 3>, 4>, 2>,
     coordinate: array<array<array<vec2<i32>, 3>, 4>, 4>,
     fog: array<vec2<i32>, 3>,
-    fog_byte: i32,
     depth: array<vec2<i32>, 3>,
     depth_difference: array<array<vec2<i32>, 3>, 3>,
     offset: vec2<u32>,
+    color: array<array<array<i32, 3>, 4>, 2>,
+    owns: array<i32, 3>,
+    fog_byte: i32,
     offset_exponent: i32,
 }
 
@@ -81,20 +81,21 @@ fn ninebit_lower(a: vec2<u32>, by: i32) -> vec2<u32> {
     let low = (a.x >> n) | ((a.y << 1u) << (31u - n));
     return select(vec2<u32>(low, high), vec2<u32>(high, u32(i32(a.y) >> 31u)), by >= 32);
 }
+// A rest and a quotient, after the quotient's next 14 bits at least, or all but 1. `above` is more than the first 16 of the divisor's bits, by less than one.
+fn ninebit_shortened(n: vec4<u32>, b: vec2<u32>, above: u32, bits: i32) -> vec4<u32> {
+    let down = ninebit_bits(n.xy) - 32;
+    let first = select(ninebit_raise(n.xy, max(-down, 0)), ninebit_lower(n.xy, max(down, 0)), down >= 0).x;
+    let up = down - bits + 16;
+    let digits = vec2<u32>(first / above, 0u);
+    let part = select(ninebit_lower(digits, max(-up, 0)), ninebit_raise(digits, max(up, 0)), up >= 0);
+    return vec4<u32>(ninebit_subtract(n.xy, ninebit_multiply(part, b)), ninebit_add(n.zw, part));
+}
 fn ninebit_divide(a: vec2<u32>, b: vec2<u32>) -> vec2<u32> {
-    if a.y == 0u && b.y == 0u { return vec2<u32>(a.x / b.x, 0u); }
-    var rest = vec2<u32>(0u, 0u);
-    var quotient = vec2<u32>(0u, 0u);
-    for (var bit = ninebit_bits(a) - 1; bit >= 0; bit--) {
-        rest = ninebit_raise(rest, 1);
-        rest.x |= ninebit_lower(a, bit).x & 1u;
-        quotient = ninebit_raise(quotient, 1);
-        if !ninebit_below(rest, b) {
-            rest = ninebit_subtract(rest, b);
-            quotient.x |= 1u;
-        }
-    }
-    return quotient;
+    let bits = ninebit_bits(b);
+    let above = (ninebit_raise(b, 64 - bits).y >> 16u) + 1u;
+    var n = vec4<u32>(a, 0u, 0u);
+    for (var k = 0; k < 5; k++) { n = ninebit_shortened(n, b, above, bits); }
+    return select(ninebit_add(n.zw, vec2<u32>(1u, 0u)), n.zw, ninebit_below(n.xy, b));
 }
 // A rest and a quotient, after 2^by times b if the rest has it.
 fn ninebit_divided(n: vec3<u32>, b: vec2<u32>, by: i32) -> vec3<u32> {
@@ -124,15 +125,15 @@ struct NinebitTriangle {
     int edge_x[3];
     int edge_y[3];
     uvec2 edge[3];
-    int owns[3];
     ivec2 ratio[3];
-    int color[2][4][3];
     ivec2 coordinate[4][4][3];
     ivec2 fog[3];
-    int fog_byte;
     ivec2 depth[3];
     ivec2 depth_difference[3][3];
     uvec2 offset;
+    int color[2][4][3];
+    int owns[3];
+    int fog_byte;
     int offset_exponent;
 };
 
@@ -183,20 +184,23 @@ uvec2 ninebit_lower(uvec2 a, int by)
     uint low = (a.x >> n) | ((a.y << 1) << (31 - n));
     return by >= 32 ? uvec2(high, uint(int(a.y) >> 31)) : uvec2(low, high);
 }
+// A rest and a quotient, after the quotient's next 14 bits at least, or all but 1. `above` is more than the first 16 of the divisor's bits, by less than one.
+uvec4 ninebit_shortened(uvec4 n, uvec2 b, uint above, int bits)
+{
+    int down = ninebit_bits(n.xy) - 32;
+    uint first = (down >= 0 ? ninebit_lower(n.xy, max(down, 0)) : ninebit_raise(n.xy, max(-down, 0))).x;
+    int up = down - bits + 16;
+    uvec2 digits = uvec2(first / above, 0u);
+    uvec2 part = up >= 0 ? ninebit_raise(digits, max(up, 0)) : ninebit_lower(digits, max(-up, 0));
+    return uvec4(ninebit_subtract(n.xy, ninebit_multiply(part, b)), ninebit_add(n.zw, part));
+}
 uvec2 ninebit_divide(uvec2 a, uvec2 b)
 {
-    if (a.y == 0u && b.y == 0u) return uvec2(a.x / b.x, 0u);
-    uvec2 rest = uvec2(0u), quotient = uvec2(0u);
-    for (int bit = ninebit_bits(a) - 1; bit >= 0; bit--) {
-        rest = ninebit_raise(rest, 1);
-        rest.x |= ninebit_lower(a, bit).x & 1u;
-        quotient = ninebit_raise(quotient, 1);
-        if (!ninebit_below(rest, b)) {
-            rest = ninebit_subtract(rest, b);
-            quotient.x |= 1u;
-        }
-    }
-    return quotient;
+    int bits = ninebit_bits(b);
+    uint above = (ninebit_raise(b, 64 - bits).y >> 16) + 1u;
+    uvec4 n = uvec4(a, 0u, 0u);
+    for (int k = 0; k < 5; k++) n = ninebit_shortened(n, b, above, bits);
+    return ninebit_below(n.xy, b) ? n.zw : ninebit_add(n.zw, uvec2(1u, 0u));
 }
 // A rest and a quotient, after 2^by times b if the rest has it.
 uvec3 ninebit_divided(uvec3 n, uvec2 b, int by)

@@ -66,6 +66,8 @@ enum Way {
     Glsl,
     /// Printed in WGSL, for scenes that are small enough.
     Wgsl,
+    /// Printed as shaders of GLSL, which OpenGL draws.
+    Pair,
 }
 
 /// Draws a scene by its functions and compares it.
@@ -83,6 +85,8 @@ fn hold(scene: &Scene, policies: Policies, way: Way, what: &str) -> Result<(), S
             printed.validated(folder.path()).unwrap_or_else(|error| panic!("{what}: {error}"));
             return Ok(());
         }
+        Way::Pair if !printed.is_plain() => return Err("no triangles".to_string()),
+        Way::Pair => printed.paired(folder.path()).unwrap_or_else(|error| panic!("{what}: {error}")),
         Way::Wgsl if !printed.is_plain() || printed.comparisons() > MAX_COMPARISONS => {
             return Err("too large".to_string());
         }
@@ -123,7 +127,7 @@ fn the_page_lists_all_refusals() {
 
 #[test]
 fn lines_of_committed_scenes_draw_them() {
-    hold_committed(Way::Lines, setting("NINEBIT_WHOLE_EVERY").unwrap_or(7) as usize);
+    hold_committed(Way::Lines, setting("NINEBIT_WHOLE_EVERY").unwrap_or(13) as usize);
 }
 
 #[test]
@@ -146,6 +150,15 @@ fn printed_wgsl_draws_scenes() {
         hold_committed(Way::Wgsl, setting("NINEBIT_WHOLE_EVERY").unwrap_or(40) as usize);
         let count = setting("NINEBIT_WHOLE_SCENES").unwrap_or(200) / 40;
         hold_random(Way::Wgsl, setting("NINEBIT_WHOLE_SEED").unwrap_or(43), count);
+    }
+}
+
+#[test]
+fn printed_shaders_draw_scenes() {
+    if works(&python(), &["-c", "import moderngl, numpy"]) {
+        hold_committed(Way::Pair, setting("NINEBIT_WHOLE_EVERY").unwrap_or(24) as usize);
+        let count = setting("NINEBIT_WHOLE_SCENES").unwrap_or(200) / 40;
+        hold_random(Way::Pair, setting("NINEBIT_WHOLE_SEED").unwrap_or(44), count);
     }
 }
 

@@ -31,8 +31,10 @@ pub(crate) struct Surface {
 /// Reads the surfaces; `None` if the model has no such ones, which is noted.
 pub(crate) fn surface(view: &mut View<'_>) -> Option<Surface> {
     let word = view.get(class::SET_SURFACE_FORMAT);
-    let format =
-        SurfaceFormat::ALL.iter().copied().find(|format| raster::surface_format(*format) == SURFACE_COLOR.of(word));
+    let format = SurfaceFormat::ALL
+        .iter()
+        .copied()
+        .find(|format| raster::surface_format(*format) == SURFACE_COLOR.value_in(word));
     let float = view.get(class::SET_CONTROL0) >> 12 & 1 != 0;
     let depth = match (word >> 4 & 0xf, float) {
         (1, false) => DepthFormat::Z16,

@@ -41,7 +41,7 @@ impl Site {
     }
 
     /// Returns the site of a portion's third output at full width.
-    pub(crate) const fn third(channel: usize) -> Site {
+    pub(crate) const fn third_output(channel: usize) -> Site {
         Site(1 << (24 + channel))
     }
 

@@ -139,7 +139,7 @@ fn evaluate_portion<A: Algebra, const N: usize>(
     let [ab_dot, cd_dot] = [portion.ab_dot_product, portion.cd_dot_product];
     let ab = product(Site::product(0, first), ab_dot, &factors[0], &factors[1], a);
     let cd = product(Site::product(1, first), cd_dot, &factors[2], &factors[3], a);
-    let site = Site::third(first);
+    let site = Site::third_output(first);
     let third = if ab_dot && cd_dot {
         [a.sum(site, |a| third(portion.mux, takes_cd, ab[0], cd[0], a)); N]
     } else {

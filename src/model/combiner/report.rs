@@ -20,7 +20,7 @@ pub(crate) fn constants<O: Observer>(block: &str, constants: [[u8; 4]; 2], obser
     for (n, constant) in constants.into_iter().enumerate() {
         for (channel, value) in constant.into_iter().enumerate() {
             let name = format!("constant{n}.{}", channel_name(channel));
-            observer.step(Step::given(block, "NUM-5", name, value).per(255).ideal(f64::from(value)));
+            observer.step(Step::plain(block, "NUM-5", name, value).per(255).ideal(f64::from(value)));
         }
     }
 }
@@ -117,7 +117,7 @@ impl StageReport {
             MuxSelect::Lsb => "mux_lsb",
         };
         observer.step(
-            Step::given(MUX_BLOCKS[self.stage], "CMB-10", MUXES[self.stage], takes_cd)
+            Step::plain(MUX_BLOCKS[self.stage], "CMB-10", MUXES[self.stage], takes_cd)
                 .by(operation, vec![report::register("spare0.a", spare0_alpha)])
                 .note(if takes_cd { "set: takes CD" } else { "clear: takes AB" }.to_string()),
         );

@@ -99,7 +99,7 @@ impl Bins {
     }
 
     /// Returns the numbers of a band's triangles.
-    pub(super) fn of(&self, band: usize) -> &[u32] {
+    pub(super) fn triangles_in(&self, band: usize) -> &[u32] {
         &self.numbers[self.starts[band]..self.starts[band + 1]]
     }
 }
@@ -181,7 +181,7 @@ mod tests {
                         top.max(rows.0) < bottom.min(rows.1)
                     })
                     .collect();
-                assert_eq!(bins.of(band), wanted, "{borders:?} {band}");
+                assert_eq!(bins.triangles_in(band), wanted, "{borders:?} {band}");
             }
         }
     }

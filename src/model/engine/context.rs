@@ -80,7 +80,7 @@ impl<'a> TriangleContext<'a> {
             return false;
         }
         self.begin(number);
-        self.place()
+        self.set_up_edges()
     }
 
     /// Returns whether triangle `number` of a draw may cover pixels in `rows`: it is not culled, it has an area, and its bounding box holds centres
@@ -140,11 +140,11 @@ impl<'a> TriangleContext<'a> {
 
     /// Sets up edge functions and depths of the triangle. Returns `false` if its depths drop it.
     #[inline(always)]
-    fn place(&mut self) -> bool {
+    fn set_up_edges(&mut self) -> bool {
         let (draw, (x, y)) = (self.draw, positions(&self.corners()));
         match draw.assembly.triangles.figure(self.number) {
             Figure::Triangle => {
-                self.triangle.place(x, y);
+                self.triangle.place_corners(x, y);
             }
             Figure::Line => self.triangle.place_line([[x[1], y[1]], [x[2], y[2]]], draw.assembly.lines),
             Figure::Point => self.triangle.place_point([x[1], y[1]], draw.assembly.size_of(self.number)),
@@ -186,7 +186,7 @@ impl<'a> TriangleContext<'a> {
         let sprite =
             Coordinates::Sprite { at: corner.position.map(i64::from), size: self.draw.assembly.size_of(self.number) };
         match &mut self.shader {
-            Some(shader) => shader.place(SPRITE_UNIT, sprite),
+            Some(shader) => shader.replace_coordinates(SPRITE_UNIT, sprite),
             None => self.coordinates[SPRITE_UNIT] = Some(sprite),
         }
     }

@@ -65,7 +65,7 @@ pub(super) const ROWS: u64 = 1 << 22;
 pub fn shaded(plan: &Plan) -> Vec<Shaded> {
     let mut left = ROWS;
     let draw = |planned: &PlannedDraw| {
-        let most = Most::of(plan, planned);
+        let most = Most::new(plan, planned);
         match left.checked_sub(most.rows) {
             Some(rest) => {
                 left = rest;
@@ -84,7 +84,7 @@ pub fn shaded(plan: &Plan) -> Vec<Shaded> {
 #[allow(clippy::result_large_err, reason = "it is made once a scene")]
 pub fn affordable(plan: &Plan, most: u64) -> Result<(), PlanError> {
     let total = |draws: &[Shaded]| draws.iter().map(|draw| draw.pixels).fold(0, u64::saturating_add);
-    let bounds = plan.draws.iter().map(|planned| Shaded { pixels: Most::of(plan, planned).pixels, exact: false });
+    let bounds = plan.draws.iter().map(|planned| Shaded { pixels: Most::new(plan, planned).pixels, exact: false });
     if total(&bounds.collect::<Vec<_>>()) <= most {
         return Ok(());
     }
@@ -142,7 +142,7 @@ pub(super) struct Most {
 }
 
 impl Most {
-    pub(super) fn of(plan: &Plan, planned: &PlannedDraw) -> Most {
+    pub(super) fn new(plan: &Plan, planned: &PlannedDraw) -> Most {
         let target = &plan.targets[planned.target];
         let all = (0, i64::from(target.height));
         let windows: Vec<walk::Window> = walk::windows(planned, all).collect();
@@ -218,7 +218,7 @@ mod tests {
                 let plan = plan(count, 48, reach, |draw| (draw.window_clip, draw.cull) = (clip.clone(), cull));
                 let rendered = render_counted(&plan, &RenderOptions::default(), &|_, _| {}).1.shaded_pixels;
                 assert_eq!(shaded(&plan), [Shaded { pixels: rendered[0], exact: true }]);
-                let most = Most::of(&plan, &plan.draws[0]);
+                let most = Most::new(&plan, &plan.draws[0]);
                 assert!(most.pixels >= rendered[0], "{most:?} {rendered:?}");
                 assert_eq!(affordable(&plan, rendered[0]), Ok(()));
                 if let Some(less) = rendered[0].checked_sub(1) {
@@ -235,7 +235,7 @@ mod tests {
             let corner = |x: f32, y: f32| Vertex { position: [x, y, 0.0, 1.0], ..Vertex::default() };
             draw.vertices = vec![corner(0.0, 0.0), corner(1000.0, 0.0), corner(0.0, 1000.0)].into();
         };
-        let most = Most::of(&plan(1, 1000, 0, half), &plan(1, 1000, 0, half).draws[0]);
+        let most = Most::new(&plan(1, 1000, 0, half), &plan(1, 1000, 0, half).draws[0]);
         assert!((499_500..510_000).contains(&most.pixels) && most.rows == 1000, "{most:?}");
     }
 

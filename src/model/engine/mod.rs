@@ -260,9 +260,9 @@ impl<'a> Renderer<'a> {
                 for (n, (index, shaded)) in draws.clone().zip(shaded).enumerate() {
                     let draw = &plan.draws[index];
                     let pixels = match &compiled {
-                        Some(_) if bins[n].of(number).is_empty() => 0,
+                        Some(_) if bins[n].triangles_in(number).is_empty() => 0,
                         Some(compiled) if !compiled[n].is_scalar => {
-                            let job = kernels.job(plan, draw, compiled[n].as_ref(), bins[n].of(number));
+                            let job = kernels.job(plan, draw, compiled[n].as_ref(), bins[n].triangles_in(number));
                             rows::run(kernels, &job, band, block)
                         }
                         _ => walk::draw(plan, draw, textures, band, &mut Silent).0,

@@ -206,7 +206,7 @@ impl TriangleContext<'_> {
             factor
         } else {
             if O::ON {
-                observer.step(Step::given("fog", "CMB-13", "fog.a", 255).per(255).ideal(255.0));
+                observer.step(Step::plain("fog", "CMB-13", "fog.a", 255).per(255).ideal(255.0));
             }
             L::ONE
         };
@@ -240,7 +240,7 @@ impl TriangleContext<'_> {
                         let value = self.draw.unbound_color[channel];
                         let block = format!("texture unit {n}");
                         let ideal = Some(f64::from(value));
-                        observer.step(Step::given(&block, "TEX-16", name, value).per(255).ideal(ideal));
+                        observer.step(Step::plain(&block, "TEX-16", name, value).per(255).ideal(ideal));
                     }
                 }
             }

@@ -49,8 +49,8 @@ pub(super) fn setup<O: Observer>(
 /// STP-1: reports the bit of a pattern, which is 1 where a triangle is drawn.
 fn pattern<O: Observer>(stipple: &PolygonStipple, (x, y): (i64, i64), observer: &mut O) {
     let word = stipple.0[31 - (y & 31) as usize];
-    let row = observer.tell(Step::given(RASTER, "STP-1", "stipple.row", word).note(format!("{word:#010x}")));
-    let step = Step::given(RASTER, "STP-1", "stipple.bit", stroke::stipples(stipple, x, y));
+    let row = observer.tell(Step::plain(RASTER, "STP-1", "stipple.row", word).note(format!("{word:#010x}")));
+    let step = Step::plain(RASTER, "STP-1", "stipple.bit", stroke::stipples(stipple, x, y));
     observer.step(step.by("stipple_bit", vec![row, plain("x", x)]));
 }
 
@@ -60,7 +60,7 @@ pub(super) fn undefined<O: Observer>(read: u64, observer: &mut O) {
         for channel in (0..4).filter(|c| read & registers::bit(register, *c) != 0) {
             let name = format!("{}.{}", registers::name(register), channel_name(channel));
             let note = "no document defines this register here; taken as 0".to_string();
-            observer.step(Step::given("registers", "CMB-13", name, 0).per(255).ideal(0.0).note(note));
+            observer.step(Step::plain("registers", "CMB-13", name, 0).per(255).ideal(0.0).note(note));
         }
     }
 }
@@ -69,7 +69,7 @@ pub(super) fn undefined<O: Observer>(read: u64, observer: &mut O) {
 pub(super) fn weights<O: Observer>(sample: &Sample<'_>, [w0, w2]: [i64; 2], barycentrics: [f64; 3], observer: &mut O) {
     #[allow(clippy::float_arithmetic, reason = "display of the ideal")]
     let ideal = barycentrics.map(|b| Some(256.0 * b));
-    let step = |name: &str, value: i64| Step::given(INTERPOLATION, "INT-2", name, value).per(256);
+    let step = |name: &str, value: i64| Step::plain(INTERPOLATION, "INT-2", name, value).per(256);
     for (k, value) in [(0, w0), (2, w2)] {
         let inputs = vec![raster::number(format!("b{k}"), sample.weights().b[k])];
         observer.step(step(&format!("W{k}"), value).by("floor_weight", inputs).ideal(ideal[k]));
@@ -125,7 +125,7 @@ impl TriangleContext<'_> {
             self.report_passed_fog(function, observer);
         }
         let factor_in_4096ths = |observer: &mut O, rule, v: i64, operation, inputs| {
-            let factor = observer.tell(Step::given(FOG, rule, "fog.4096", v).per(4096).by(operation, inputs));
+            let factor = observer.tell(Step::plain(FOG, rule, "fog.4096", v).per(4096).by(operation, inputs));
             ("NUM-6", "factor_byte", vec![factor])
         };
         let (rule, operation, inputs) = match (plane, found.from) {
@@ -140,7 +140,7 @@ impl TriangleContext<'_> {
             }
             (FogPlane::Exponential(mode, _), FogStep::Exponential(q)) => {
                 let e = interpolated(observer, "FOG-4", "fog.e");
-                let steps = Step::given(FOG, "FOG-4", "fog.q", q).per(4096).by("fog_steps", vec![e]);
+                let steps = Step::plain(FOG, "FOG-4", "fog.q", q).per(4096).by("fog_steps", vec![e]);
                 let operation = match mode {
                     FogMode::Exp => "fog_exp",
                     FogMode::ExpAbs => "fog_exp_abs",
@@ -165,11 +165,11 @@ impl TriangleContext<'_> {
     /// FOG-1 to FOG-3, INT-5n: reports the fog coordinates that the vertices pass on.
     fn report_passed_fog<O: Observer>(&self, function: &FogFunction, observer: &mut O) {
         let word = |observer: &mut O, rule, name: String, value: u32, operation, inputs| {
-            let step = Step::given(FOG, rule, name, value).by(operation, inputs);
+            let step = Step::plain(FOG, rule, name, value).by(operation, inputs);
             observer.tell(step.note(f32::from_bits(value).to_string()))
         };
         let pattern = |observer: &mut O, name: String, value: f32| {
-            observer.tell(Step::given(FOG, "FOG-1", name, value.to_bits()).note(value.to_string()))
+            observer.tell(Step::plain(FOG, "FOG-1", name, value.to_bits()).note(value.to_string()))
         };
         let vertices = self.vertices();
         let (passed, coordinates) = (vertices.fog(), vertices.fog_coordinates());
@@ -190,7 +190,7 @@ impl TriangleContext<'_> {
             let name = |what: &str| format!("vertex{k}.fog.{what}");
             let Some(d) = made else {
                 let note = "made at the nearest w, or given".to_string();
-                observer.step(Step::given(FOG, "RAS-0", name("passed"), passed.to_bits()).note(note));
+                observer.step(Step::plain(FOG, "RAS-0", name("passed"), passed.to_bits()).note(note));
                 continue;
             };
             let given = pattern(observer, name("coordinate"), d);
@@ -239,7 +239,7 @@ impl TriangleContext<'_> {
         for (k, z) in values.iter().enumerate() {
             let name = format!("vertex{k}.{letter}");
             inputs.push(observer.tell(match whole && !test.w_buffer {
-                true => Step::given(DEPTH, "DEP-1", name, *z as i64),
+                true => Step::plain(DEPTH, "DEP-1", name, *z as i64),
                 false => float_step(DEPTH, first, name, *z, f64::from(*z)),
             }));
         }
@@ -258,7 +258,7 @@ impl TriangleContext<'_> {
         if let Some(range) = test.range {
             inputs.extend([float("lowest", range.lowest), float("highest", range.highest)]);
             if !range.clamps {
-                let step = Step::given(DEPTH, "DEP-4", "depth_range.inside", word.is_some());
+                let step = Step::plain(DEPTH, "DEP-4", "depth_range.inside", word.is_some());
                 let note = word.is_none().then(|| "outside: the fragment is dropped".to_owned());
                 observer
                     .step(step.by(["depth_inside", "w_inside"][usize::from(test.w_buffer)], inputs.clone()).note(note));
@@ -275,7 +275,7 @@ impl TriangleContext<'_> {
             (DepthFormat::Z24S8F, true) => "w_float_24",
         };
         let rule = if draw.depth_format.is_float() { "DEP-3" } else { first };
-        let step = Step::given(DEPTH, rule, "z", word).per(self.depth_unit()).by(operation, inputs);
+        let step = Step::plain(DEPTH, rule, "z", word).per(self.depth_unit()).by(operation, inputs);
         observer.step(step.ideal(self.ideal_depth(sample)));
     }
 
@@ -294,11 +294,11 @@ impl TriangleContext<'_> {
         passed: bool,
         observer: &mut O,
     ) {
-        observer.step(Step::given(DEPTH, "", "z.stored", stored).per(self.depth_unit()));
+        observer.step(Step::plain(DEPTH, "", "z.stored", stored).per(self.depth_unit()));
         let depth = |name: &str, value: i64| Operand { per_one: self.depth_unit(), ..plain(name, value) };
         let inputs = vec![depth("z", z), depth("z.stored", stored)];
         observer.step(
-            Step::given(DEPTH, "DEP-2", "depth_test.passed", passed)
+            Step::plain(DEPTH, "DEP-2", "depth_test.passed", passed)
                 .by(blend::compare_operation(test.function), inputs)
                 .note(if passed { "passes" } else { "fails: the fragment is dropped" }.to_string()),
         );
@@ -326,7 +326,7 @@ impl TriangleContext<'_> {
             let name = format!("source.{suffix}");
             observer.step(report::register_step(BLOCK, "ROP-5", name, truncated[channel]).by(operation, inputs));
         }
-        observer.step(Step::given(BLOCK, "", "destination.word", word).note(format!("{word:#010x}")));
+        observer.step(Step::plain(BLOCK, "", "destination.word", word).note(format!("{word:#010x}")));
         for (channel, value) in destination.iter().enumerate() {
             let inputs = vec![
                 plain("destination.word", word),
@@ -338,7 +338,7 @@ impl TriangleContext<'_> {
         }
         for (channel, value) in draw.blend_constant.into_iter().enumerate() {
             let name = format!("blend_constant.{}", channel_name(channel));
-            observer.step(Step::given(BLOCK, "NUM-5", name, value).per(255).ideal(f64::from(value)));
+            observer.step(Step::plain(BLOCK, "NUM-5", name, value).per(255).ideal(f64::from(value)));
         }
     }
 
@@ -355,14 +355,14 @@ impl TriangleContext<'_> {
         let bits = surface::channel_bits(draw.surface);
         let mut inputs =
             vec![plain(draw.surface.name(), 0), plain("surface.word", old), plain("write_mask", draw.write_mask)];
-        observer.step(Step::given(BLOCK, "", "surface.word", old).note(format!("{old:#010x}")));
+        observer.step(Step::plain(BLOCK, "", "surface.word", old).note(format!("{old:#010x}")));
         for channel in (0..4).filter(|c| bits[*c] & draw.write_mask != 0 && draw.final_combiner.live >> c & 1 != 0) {
             let from = if draw.blend.is_some() && draw.blended >> channel & 1 != 0 { "blend" } else { "fragment" };
             let value = channels[channel].observe().0;
             inputs.push(byte([from, ".", channel_name(channel)].concat(), value));
         }
         let note = format!("{word:#010x}");
-        observer.step(Step::given(BLOCK, "ROP-5", "stored.word", word).by("store", inputs).note(note));
+        observer.step(Step::plain(BLOCK, "ROP-5", "stored.word", word).by("store", inputs).note(note));
         let shown = surface::show(draw.surface, word);
         for channel in 0..4 {
             if !observer.wants(&["stored.", channel_name(channel)]) {
@@ -377,13 +377,13 @@ impl TriangleContext<'_> {
                 plain(channel_name(channel), channel as i64),
             ];
             observer.step(
-                Step::given(BLOCK, "TEX-1", name, shown[channel]).per(255).by("expand_texel", inputs).ideal(ideal),
+                Step::plain(BLOCK, "TEX-1", name, shown[channel]).per(255).by("expand_texel", inputs).ideal(ideal),
             );
         }
         if draw.depth_test.is_some_and(|test| test.write) {
             let z = memory.depth;
             let inputs = vec![Operand { per_one: self.depth_unit(), ..plain("z", z) }];
-            observer.step(Step::given(BLOCK, "DEP-2", "stored.z", z).per(self.depth_unit()).by("write", inputs));
+            observer.step(Step::plain(BLOCK, "DEP-2", "stored.z", z).per(self.depth_unit()).by("write", inputs));
         }
     }
 }
@@ -393,15 +393,15 @@ const STENCIL_BLOCK: &str = "stencil test";
 /// STN-1: reports the comparison, and whether it passes.
 pub(super) fn stencil_test<O: Observer>(test: &StencilTest, stored: u8, passed: bool, observer: &mut O) {
     let mut masked = |name: &str, value: u8| {
-        let given = Step::given(STENCIL_BLOCK, "", name, value);
+        let given = Step::plain(STENCIL_BLOCK, "", name, value);
         observer.step(given.note(format!("{value:#04x}")));
         let inputs = vec![plain(name, value), plain("stencil_test.mask", test.mask)];
         observer
-            .tell(Step::given(STENCIL_BLOCK, "STN-1", format!("{name}.masked"), value & test.mask).by("and", inputs))
+            .tell(Step::plain(STENCIL_BLOCK, "STN-1", format!("{name}.masked"), value & test.mask).by("and", inputs))
     };
     let inputs = vec![masked("stencil_test.reference", test.reference), masked("stencil.stored", stored)];
     observer.step(
-        Step::given(STENCIL_BLOCK, "STN-1", "stencil_test.passed", passed)
+        Step::plain(STENCIL_BLOCK, "STN-1", "stencil_test.passed", passed)
             .by(blend::compare_operation(test.function), inputs)
             .note(if passed { "passes" } else { "fails: the fragment is dropped" }.to_string()),
     );
@@ -431,7 +431,7 @@ pub(super) fn stencil<O: Observer>(
         StencilOperation::Increment => "stencil_increment",
         StencilOperation::Decrement => "stencil_decrement",
     };
-    let step = Step::given(STENCIL_BLOCK, "STN-1", "stencil", written);
+    let step = Step::plain(STENCIL_BLOCK, "STN-1", "stencil", written);
     observer.step(step.by(name, inputs).note(format!("{written:#04x}")));
 }
 

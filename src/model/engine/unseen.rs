@@ -69,7 +69,7 @@ fn tests(planned: &PlannedDraw) -> Option<Unseen> {
 
 /// Returns why no triangle covers a pixel, if that is so. `left` is the number of rows that may be looked at.
 fn covered(plan: &Plan, planned: &PlannedDraw, left: &mut u64) -> Option<Unseen> {
-    if Most::of(plan, planned).rows > *left {
+    if Most::new(plan, planned).rows > *left {
         return None;
     }
     let mut covers = false;
@@ -85,7 +85,7 @@ fn covered(plan: &Plan, planned: &PlannedDraw, left: &mut u64) -> Option<Unseen>
     let windows: Vec<walk::Window> = walk::windows(planned, rows).collect();
     let mut counts = [0; Missed::ALL.len()];
     for number in 0..planned.assembly.triangles.len() {
-        counts[Missed::of(planned, number, &windows) as usize] += 1;
+        counts[Missed::new(planned, number, &windows) as usize] += 1;
     }
     Some(triangles(planned, &counts))
 }
@@ -105,7 +105,7 @@ crate::state::named! {
 }
 
 impl Missed {
-    fn of(planned: &PlannedDraw, number: usize, windows: &[walk::Window]) -> Missed {
+    fn new(planned: &PlannedDraw, number: usize, windows: &[walk::Window]) -> Missed {
         let [across, down] = [0, 1].map(|axis| planned.assembly.bounds(number, axis));
         let meets = |a: (i64, i64), b: (i64, i64)| a.0.max(b.0) < a.1.min(b.1);
         let is_triangle = planned.assembly.triangles.figure(number) == Figure::Triangle;

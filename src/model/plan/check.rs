@@ -59,7 +59,7 @@ impl Check<'_> {
         self.errors.push(PlanError { draw: self.draw, ..PlanError::new(code, rule, message, help) });
     }
 
-    fn found(&mut self, finding: Diagnostic) {
+    fn report(&mut self, finding: Diagnostic) {
         let Diagnostic { code, rule, message, help, .. } = finding;
         let error = PlanError::new(code, rule, message, help.unwrap_or_default());
         self.errors.push(PlanError { draw: self.draw, unit: self.unit, ..error });
@@ -71,7 +71,7 @@ impl Check<'_> {
     }
 
     fn accept(&mut self, finding: Option<Diagnostic>) {
-        finding.into_iter().for_each(|finding| self.found(finding));
+        finding.into_iter().for_each(|finding| self.report(finding));
     }
 
     /// Returns whether there is no finding about a texture, and refuses it otherwise.
@@ -79,7 +79,7 @@ impl Check<'_> {
         let Some(mut finding) = finding else { return true };
         finding.message = format!("texture `{}`: {}", texture.name, finding.message);
         finding.help = Some(format!("{}: {}", finding.label, finding.help.unwrap_or_default()));
-        self.found(finding);
+        self.report(finding);
         false
     }
 
@@ -341,7 +341,7 @@ impl Check<'_> {
         for finding in
             checked.findings.into_iter().filter(|finding| finding.severity == Severity::Error).take(MAX_ERRORS)
         {
-            self.found(finding);
+            self.report(finding);
         }
     }
 
@@ -359,7 +359,7 @@ impl Check<'_> {
                 self.unit(draw, index, unit, stage);
                 self.unit = None;
             } else if stage.operation.samples() {
-                self.found(legality::shader::unbound(index, None));
+                self.report(legality::shader::unbound(index, None));
             }
         }
     }
@@ -372,7 +372,7 @@ impl Check<'_> {
             self.refuse("NB0319", "TSH-10", message, "a vertex has the sets 0 to 3");
         }
         if stage.previous >= index.max(1) {
-            self.found(legality::shader::later_unit(index, stage.previous, None));
+            self.report(legality::shader::later_unit(index, stage.previous, None));
         }
         self.accept(legality::shader::order(&draw.texture_shader, index, None, None));
         let finite = match stage.operation {
@@ -409,7 +409,7 @@ impl Check<'_> {
                 let (message, help) = missing("palette", palette, self.scene.palettes.len());
                 self.refuse("NB0212", "TEX-1", format!("unit {index} reads {message}"), help);
             }
-            None if *format == TextureFormat::P8 => self.found(legality::texture::missing_palette(name, None)),
+            None if *format == TextureFormat::P8 => self.report(legality::texture::missing_palette(name, None)),
             Some(_) if *format != TextureFormat::P8 => {
                 self.accepts(texture, Some(legality::texture::unread_palette(*format, None)));
             }

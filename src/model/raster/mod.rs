@@ -8,6 +8,7 @@
 pub mod assemble;
 pub mod binary;
 pub mod depth;
+pub(crate) mod doubles;
 pub mod fog;
 pub mod ideal;
 pub mod interpolate;

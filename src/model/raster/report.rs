@@ -8,7 +8,7 @@ use crate::trace::{Observer, Operand, Step, float_step, plain};
 /// Returns a step that yields a number of WGT-1.
 pub(crate) fn number_step(block: &str, rule: &'static str, name: impl Into<String>, value: Binary) -> Step {
     let Binary { mantissa, exponent } = shortest(value);
-    Step { exponent: exponent as i32, ..Step::given(block, rule, name, mantissa) }
+    Step { exponent: exponent as i32, ..Step::plain(block, rule, name, mantissa) }
 }
 
 /// Returns a number of WGT-1 as an operand.
@@ -52,7 +52,7 @@ pub(crate) fn edges<O: Observer>(
         ];
         let owns = if triangle.owns[k] { "left or top edge" } else { "right or bottom edge" };
         let on_edge = (rule == "RAS-3" && e[k] == 0).then(|| format!("exactly on a {owns}"));
-        let step = Step::given(block, rule, format!("{prefix}E{k}"), e[k]);
+        let step = Step::plain(block, rule, format!("{prefix}E{k}"), e[k]);
         observer.step(step.by("edge_function", inputs).note(on_edge));
     }
 }
@@ -67,7 +67,7 @@ pub(crate) fn stroke<O: Observer>(
 ) {
     let (columns, rows) = (figure.columns, figure.rows);
     for (name, value) in [("left", columns.0), ("right", columns.1 - 1), ("top", rows.0), ("bottom", rows.1 - 1)] {
-        observer.step(Step::given(block, rule, format!("box.{name}"), value));
+        observer.step(Step::plain(block, rule, format!("box.{name}"), value));
     }
     for (k, [a, b, c]) in figure.sides.into_iter().enumerate().filter(|(_, side)| *side != [0; 3]) {
         let inputs = vec![
@@ -77,7 +77,7 @@ pub(crate) fn stroke<O: Observer>(
             plain("x", x),
             plain("y", y),
         ];
-        let step = Step::given(block, rule, format!("side{k}"), a * x + b * y + c);
+        let step = Step::plain(block, rule, format!("side{k}"), a * x + b * y + c);
         observer.step(step.by("edge_function", inputs));
     }
 }

@@ -56,7 +56,7 @@ impl Triangle {
     pub fn new(positions: [[f32; 4]; 3], perspective: bool, profile: Profile) -> Option<Triangle> {
         let (x, y) = (positions.map(|p| snap(p[0])), positions.map(|p| snap(p[1])));
         let mut triangle = Triangle::default();
-        if !triangle.place(x, y) {
+        if !triangle.place_corners(x, y) {
             return None;
         }
         triangle.weigh(positions.map(|p| p[3]), perspective, profile);
@@ -66,7 +66,7 @@ impl Triangle {
     /// Sets all fields that do not [depend on w](Self::weigh) from x and y after RAS-1, in 1/16 pixel. Returns `false`
     /// if the area is zero; the triangle is then unusable.
     #[inline(always)]
-    pub(crate) fn place(&mut self, x: [i64; 3], y: [i64; 3]) -> bool {
+    pub(crate) fn place_corners(&mut self, x: [i64; 3], y: [i64; 3]) -> bool {
         debug_assert!(x.iter().chain(&y).all(|n| n.abs() < GUARD));
         let edges = EdgeFunctions::new(x, y);
         (self.a, self.b, self.c, self.owns) = (edges.a, edges.b, edges.c, edges.owns);

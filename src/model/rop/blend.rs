@@ -190,7 +190,7 @@ pub fn alpha_test<L: Lane, O: Observer>(test: &AlphaTest, alpha: L, observer: &m
         let inputs =
             vec![report::register("fragment.a", alpha), crate::trace::byte("alpha_test.reference", test.reference)];
         observer.step(
-            crate::trace::Step::given("alpha test", "ROP-1", "alpha_test.passed", passed)
+            crate::trace::Step::plain("alpha test", "ROP-1", "alpha_test.passed", passed)
                 .by(compare_operation(test.function), inputs)
                 .note(if passed { "passes" } else { "fails: the fragment is dropped" }.to_string()),
         );

@@ -57,7 +57,7 @@ fn dropped_alpha_bits(format: SurfaceFormat) -> u32 {
 
 /// Returns the final channels of a pixel: those that a picture shows, except for an alpha of seven bits, which is read
 /// as blending does because a picture shows the unused bit with it.
-pub fn kept(format: SurfaceFormat, word: u32) -> [u8; 4] {
+pub fn final_channels(format: SurfaceFormat, word: u32) -> [u8; 4] {
     let (shown, read) = (show(format, word), read(format, word));
     std::array::from_fn(|n| if sampled_channels(format) >> n & 1 != 0 { shown[n] } else { read[n] })
 }

@@ -80,7 +80,7 @@ impl Vertex {
 
 impl Draw {
     /// Returns the default draw of vertices, each once and in order: three of them make a triangle.
-    pub fn of(vertices: impl Into<Vertices>) -> Draw {
+    pub fn from_vertices(vertices: impl Into<Vertices>) -> Draw {
         let vertices = vertices.into();
         // A plan takes far fewer than an index can name.
         let indices = (0..u32::try_from(vertices.len()).unwrap_or(u32::MAX)).collect();
@@ -94,7 +94,7 @@ impl Draw {
             |(x, s), (y, t)| Vertex { texture_coordinates: [[s, t, 0.0, 1.0]; TEXTURE_UNITS], ..Vertex::at(x, y) };
         let ([left, right], [top, bottom]) = ([(0.0, 0.0), (width, 1.0)], [(0.0, 0.0), (height, 1.0)]);
         let corners = vec![corner(left, top), corner(right, top), corner(left, bottom), corner(right, bottom)];
-        Draw { topology: Topology::TriangleStrip, ..Draw::of(corners) }
+        Draw { topology: Topology::TriangleStrip, ..Draw::from_vertices(corners) }
     }
 
     /// Returns the draw with a texture bound to unit `index`, which samples it with coordinate set `index`. A unit that does something else by the

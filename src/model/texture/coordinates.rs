@@ -221,7 +221,7 @@ impl Interpolated<'_> {
     }
 
     /// Returns r, and q if the coordinates are ratios.
-    fn third(&self) -> (Binary, Option<Binary>) {
+    fn r_and_q(&self) -> (Binary, Option<Binary>) {
         let of = |n: usize| self.at.value(&Linear::new(self.component(n)));
         (of(2), (self.component(3) != [1.0; 3]).then(|| of(3)))
     }
@@ -354,7 +354,7 @@ impl SampleCoordinates for Interpolated<'_> {
     }
 
     fn layer(&self, layers: u32) -> i64 {
-        match self.third() {
+        match self.r_and_q() {
             (r, Some(q)) => ratio(r, q, layers.into()),
             (r, None) => coordinate(r, layers.into()),
         }
@@ -376,7 +376,7 @@ impl SampleCoordinates for Interpolated<'_> {
     }
 
     fn reference(&self) -> Binary {
-        let (r, q) = self.third();
+        let (r, q) = self.r_and_q();
         q.map_or(r, |q| r.positive_ratio(q))
     }
 
@@ -386,7 +386,7 @@ impl SampleCoordinates for Interpolated<'_> {
         inputs.push(plain(format.name(), 0));
         let real = ideal::in_words(format, self.real_r());
         observer.step(
-            Step::given(&report.block(), "SHD-1", report.name("reference"), word).by(operation, inputs).ideal(real),
+            Step::plain(&report.block(), "SHD-1", report.name("reference"), word).by(operation, inputs).ideal(real),
         );
     }
 
@@ -455,7 +455,7 @@ impl Interpolated<'_> {
 
     /// Reports r, and q if it is not 1 at all vertices, and returns them as operands.
     fn tell_third<O: Observer>(&self, report: &Report<'_>, observer: &mut O) -> Vec<Operand> {
-        let components: &[usize] = if self.third().1.is_some() { &[2, 3] } else { &[2] };
+        let components: &[usize] = if self.r_and_q().1.is_some() { &[2, 3] } else { &[2] };
         components.iter().map(|&n| report.component(n, "", self.component(n), self.at, observer)).collect()
     }
 
@@ -469,7 +469,7 @@ impl Interpolated<'_> {
     ) -> Option<Operand> {
         let Coordinates::Direction(direction) = self.coordinates else { return None };
         let face = Self::face_at(direction, at);
-        let step = Step::given(&report.block(), "TEX-12", report.name(name), face as i64);
+        let step = Step::plain(&report.block(), "TEX-12", report.name(name), face as i64);
         Some(observer.tell(step.by("cube_face", numbers.to_vec()).note(Named::name(face).to_string())))
     }
 }

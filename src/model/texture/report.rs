@@ -56,7 +56,7 @@ impl Report<'_> {
 
     /// Returns a step of this unit.
     pub(crate) fn step(&self, rule: &'static str, suffix: &str, value: impl Into<i64>) -> Step {
-        Step::given(&self.block(), rule, self.name(suffix), value)
+        Step::plain(&self.block(), rule, self.name(suffix), value)
     }
 
     /// Reports edge functions and weights of a pixel of the quad. Their names begin with `prefix`.
@@ -100,7 +100,7 @@ impl Report<'_> {
         observer: &mut O,
     ) {
         let name = self.name(&format!("quad{pixel}.{letter}"));
-        observer.step(Step::given(&self.block(), "TEX-11", name, value).per(QUAD_PART).by(operation, inputs));
+        observer.step(Step::plain(&self.block(), "TEX-11", name, value).per(QUAD_PART).by(operation, inputs));
     }
 
     /// TEX-9 to TEX-11: reports the lod, and the filter and levels that it chooses.
@@ -185,7 +185,7 @@ impl Report<'_> {
                 for step in 0..2 {
                     let name = self.name(&format!("{axis}{step}"));
                     let operation = if step == 0 { "linear_texel" } else { "linear_texel_next" };
-                    observer.step(Step::given(&self.block(), "TEX-6", name, texel[n] + step).by(operation, inputs()));
+                    observer.step(Step::plain(&self.block(), "TEX-6", name, texel[n] + step).by(operation, inputs()));
                 }
             }
             let suffix = ["weight_u", "weight_v"][n];
@@ -271,7 +271,7 @@ impl Report<'_> {
         let block = self.block();
         let [depth, named] = ["texel.depth", "reference"].map(|name| self.name(name));
         if shadow.reference == ShadowReference::Zero {
-            observer.step(Step::given(&block, "SHD-1", named.clone(), reference));
+            observer.step(Step::plain(&block, "SHD-1", named.clone(), reference));
         }
         let note = format!("words of {}", format.name());
         let inputs = vec![plain(named, reference), plain(depth, stored)];
@@ -321,7 +321,7 @@ impl Report<'_> {
         let word = self.word(words, texel, (place, lies), &texel_name, observer);
         if self.unit.format.depth().is_some() {
             let inputs = vec![plain(texel_name("word"), word)];
-            let depth = Step::given(&block, "SHD-1", texel_name("depth"), depth_of(word));
+            let depth = Step::plain(&block, "SHD-1", texel_name("depth"), depth_of(word));
             observer.step(depth.by("depth_of_word", inputs));
         }
         word
@@ -379,7 +379,7 @@ impl Report<'_> {
         let mut tell = |rule: &'static str, what: &str, word: u32, operation: &'static str, inputs: Vec<Operand>| {
             let note = Some(format!("{word:#010x}"));
             let lies = lies.filter(|_| operation == "fetch");
-            let step = Step::given(&block, rule, name(what), word).by(operation, inputs).note(note);
+            let step = Step::plain(&block, rule, name(what), word).by(operation, inputs).note(note);
             observer.step(step.at(lies));
             word
         };
@@ -564,7 +564,7 @@ pub fn address_step(
     let operation = address_operation(mode, border_texels);
     let moved = inputs.first().is_some_and(|index| index.value != texel);
     let note = moved.then(|| format!("{operation} from outside"));
-    Step::given(block, "TEX-7", name, texel).by(operation, inputs).note(note)
+    Step::plain(block, "TEX-7", name, texel).by(operation, inputs).note(note)
 }
 
 fn address_operation(mode: AddressMode, border_texels: bool) -> &'static str {

@@ -17,7 +17,7 @@ fn name(index: usize, suffix: &str) -> String {
 }
 
 fn step(index: usize, rule: &'static str, suffix: &str, value: impl Into<i64>) -> Step {
-    Step::given(&block(index), rule, name(index, suffix), value)
+    Step::plain(&block(index), rule, name(index, suffix), value)
 }
 
 /// Returns a step that yields a single-precision number.
@@ -91,7 +91,7 @@ pub(super) fn previous<O: Observer>(index: usize, color: &Color, channels: &[usi
         let register = format!("texture{}.{}", color.unit, channel_name(n));
         let value = i64::from(color.bytes[n]);
         let operation = if color.doubled[n] { "byte_of_double" } else { "byte_of_register" };
-        let step = Step::given(&block(index), "NUM-1", previous_name(index, n), value);
+        let step = Step::plain(&block(index), "NUM-1", previous_name(index, n), value);
         observer.step(step.by(operation, vec![byte(register, color.held[n])]));
     }
 }

@@ -73,7 +73,7 @@ impl ShaderSetup {
     }
 
     /// Replaces the coordinates at which a stage samples, if it has any.
-    pub(crate) fn place(&mut self, index: usize, coordinates: Coordinates) {
+    pub(crate) fn replace_coordinates(&mut self, index: usize, coordinates: Coordinates) {
         if matches!(self.0[index], StageSetup::Places(_)) {
             self.0[index] = StageSetup::Places(coordinates);
         }

@@ -175,7 +175,7 @@ pub struct TexelAddress {
 
 impl Step {
     /// Creates a step whose value is a plain integer, with `per_one` 1 and without operands.
-    pub fn given(block: &str, rule: &'static str, name: impl Into<String>, value: impl Into<i64>) -> Step {
+    pub fn plain(block: &str, rule: &'static str, name: impl Into<String>, value: impl Into<i64>) -> Step {
         Step {
             block: block.to_string(),
             rule,
@@ -242,7 +242,7 @@ impl Step {
 /// Returns a step that yields a single-precision number.
 pub(crate) fn float_step(block: &str, rule: &'static str, name: impl Into<String>, value: f32, ideal: f64) -> Step {
     let Operand { value, per_one, .. } = float("", value);
-    Step { per_one, ideal: Some(ideal), ..Step::given(block, rule, name, value) }
+    Step { per_one, ideal: Some(ideal), ..Step::plain(block, rule, name, value) }
 }
 
 /// Returns a single-precision operand. All NaNs become the same one.
@@ -291,7 +291,7 @@ pub mod report {
     /// Returns a step that yields a register or byte.
     pub fn register_step<L: Lane>(block: &str, rule: &'static str, name: impl Into<String>, value: L) -> Step {
         let (value, ideal) = value.observe();
-        Step::given(block, rule, name, value).per(255).ideal(ideal)
+        Step::plain(block, rule, name, value).per(255).ideal(ideal)
     }
 
     /// Returns a step that yields a factor.
@@ -299,14 +299,14 @@ pub mod report {
         let (fixed, ideal) = L::observe_factor(v);
         let (value, per_one) = whole(fixed, 2, 255);
         // The ideal is in 255ths, whatever the unit of the step.
-        Step { per_one, ..Step::given(block, rule, name, value).per(255).ideal(ideal) }
+        Step { per_one, ..Step::plain(block, rule, name, value).per(255).ideal(ideal) }
     }
 
     /// Returns a step that yields a sum.
     pub(crate) fn sum_step<L: Lane>(block: &str, rule: &'static str, name: impl Into<String>, value: L::Full) -> Step {
         let (fixed, ideal) = L::observe_sum(value);
         let (value, per_one) = whole(fixed, 4, 65025);
-        Step { per_one, ..Step::given(block, rule, name, value).per(65025).ideal(ideal) }
+        Step { per_one, ..Step::plain(block, rule, name, value).per(65025).ideal(ideal) }
     }
 
     /// Removes a fraction from the unit if the value is a multiple of it.

@@ -170,7 +170,7 @@ impl<'t> Reader<'t> {
 
     /// Records that something else was expected here, and returns `None`.
     fn expected<T>(&mut self, what: &str) -> Option<T> {
-        let message = format!("expected {what}, found {}", self.cursor.found("the end of the text"));
+        let message = format!("expected {what}, found {}", self.cursor.current_token("the end of the text"));
         let help = format!("write {}", self.vocabulary.example);
         self.findings.push(finding("NB0103", self.cursor.span(), message, "not a statement from here", help));
         None

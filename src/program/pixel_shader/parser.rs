@@ -52,7 +52,7 @@ impl Parser<'_> {
             false => (self.cursor.span(), "not expected here"),
         };
         let help = "an instruction is written `mad_x2_sat r0.rgb, t0_bx2, 1-v0.a, c0`";
-        let message = format!("expected {what}, found {}", self.cursor.found("the end of the text"));
+        let message = format!("expected {what}, found {}", self.cursor.current_token("the end of the text"));
         self.push("NB0103", span, message, label, help);
         None
     }

@@ -29,9 +29,9 @@ pub(super) fn input_byte(input: &CombinerInput) -> u32 {
 /// Decodes such a byte of an RGB or alpha portion.
 pub(super) fn input_of(byte: u32, alpha: bool) -> CombinerInput {
     CombinerInput {
-        register: general_register(layout::REGISTER.of(byte)),
+        register: general_register(layout::REGISTER.value_in(byte)),
         component: component(byte, alpha),
-        mapping: InputMapping::ALL[layout::MAPPING.of(byte) as usize],
+        mapping: InputMapping::ALL[layout::MAPPING.value_in(byte) as usize],
     }
 }
 
@@ -54,7 +54,7 @@ pub(super) fn final_byte(input: &FinalInput) -> u32 {
 /// Decodes such a byte; `alpha` says that it is input G.
 pub(super) fn final_of(byte: u32, alpha: bool) -> FinalInput {
     FinalInput {
-        register: final_register(layout::REGISTER.of(byte)),
+        register: final_register(layout::REGISTER.value_in(byte)),
         component: component(byte, alpha),
         invert: layout::INVERT.is_set(byte),
     }
@@ -88,13 +88,13 @@ pub(super) fn output_word(portion: &Portion) -> u32 {
 
 /// Decodes the input and output words of a portion, which the chip accepts.
 pub(super) fn portion_of(inputs: u32, output: u32, alpha: bool) -> Portion {
-    let operation = OPERATIONS.iter().find(|(code, _, _)| *code == layout::OPERATION.of(output));
+    let operation = OPERATIONS.iter().find(|(code, _, _)| *code == layout::OPERATION.value_in(output));
     let (_, bias, scale) = operation.copied().unwrap_or(OPERATIONS[0]);
-    let [ab_output, cd_output, sum_output] = layout::OUTPUTS.map(|field| general_register(field.of(output)));
+    let [ab_output, cd_output, sum_output] = layout::OUTPUTS.map(|field| general_register(field.value_in(output)));
     let [ab_dot_product, cd_dot_product] = layout::DOT_PRODUCTS.map(|field| field.is_set(output));
     let [ab_blue_to_alpha, cd_blue_to_alpha] = layout::BLUE_TO_ALPHA.map(|field| field.is_set(output));
     Portion {
-        inputs: layout::BYTES.map(|field| input_of(field.of(inputs), alpha)),
+        inputs: layout::BYTES.map(|field| input_of(field.value_in(inputs), alpha)),
         cd_output,
         ab_output,
         sum_output,
@@ -110,10 +110,10 @@ pub(super) fn portion_of(inputs: u32, output: u32, alpha: bool) -> Portion {
 
 /// Returns the bits of a word that the chip stores.
 pub fn stored(word: Word, index: usize, value: u32, chip: Profile) -> u32 {
-    value & taken(word, index, chip)
+    value & used_bits(word, index, chip)
 }
 
-fn taken(word: Word, index: usize, chip: Profile) -> u32 {
+fn used_bits(word: Word, index: usize, chip: Profile) -> u32 {
     match (word, chip) {
         (Word::RcInAlpha | Word::RcInRgb | Word::RcColor | Word::RcConstantColor0 | Word::RcConstantColor1, _) => !0,
         (Word::RcOutAlpha, _) => 0x3_cfff,
@@ -130,7 +130,7 @@ fn taken(word: Word, index: usize, chip: Profile) -> u32 {
 pub fn refusal(word: Word, index: usize, value: u32, chip: Profile) -> Option<Refusal> {
     let name = word.label(chip, index);
     let refuse = |code, message: String, help: String| Some(Refusal { word, index, code, message, help });
-    let code = layout::OPERATION.of(value);
+    let code = layout::OPERATION.value_in(value);
     let is_output = matches!(word, Word::RcOutAlpha | Word::RcOutRgb);
     if is_output && !OPERATIONS.iter().any(|(known, ..)| *known == code) {
         let message = format!("{name} is {value:08x}: operation code {code} (bits 15 to 17) is a bias with x4 or x1/2");
@@ -143,18 +143,18 @@ pub fn refusal(word: Word, index: usize, value: u32, chip: Profile) -> Option<Re
             return refuse("NB0360", message, format!("codes there: {}", kind.list(chip)));
         }
     }
-    let extra = value & !taken(word, index, chip);
+    let extra = value & !used_bits(word, index, chip);
     if extra != 0 {
         let message = format!("{name} is {value:08x}: {chip:?} does not take the bits {extra:08x}");
-        let mut help = format!("{:08x} is what it would keep", value & taken(word, index, chip));
+        let mut help = format!("{:08x} is what it would keep", value & used_bits(word, index, chip));
         if word == Word::RcOutAlpha && extra & 0x3000 != 0 {
             help.push_str("; the alpha portion has no dot product (bits 12 and 13)");
         }
         return refuse("NB0361", message, help);
     }
     let stages = match (word, chip) {
-        (Word::RcOutRgb, Profile::Nv10) if index == 1 => Some((layout::stages(chip).of(value), "bits 28 and 29")),
-        (Word::RcConfig, _) => Some((layout::stages(chip).of(value), "bits 0 to 3")),
+        (Word::RcOutRgb, Profile::Nv10) if index == 1 => Some((layout::stages(chip).value_in(value), "bits 28 and 29")),
+        (Word::RcConfig, _) => Some((layout::stages(chip).value_in(value), "bits 0 to 3")),
         _ => None,
     };
     let most = chip.general_stages() as u32;

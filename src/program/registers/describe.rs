@@ -39,7 +39,7 @@ fn meaning(words: &RegisterWords, word: Word, index: usize) -> String {
     let chip = words.chip;
     let value = words.get(word, index);
     let (config, at) = layout::config(chip);
-    let count = layout::stages(chip).of(words.get(config, at));
+    let count = layout::stages(chip).value_in(words.get(config, at));
     let idle = index as u32 >= count;
     match word {
         Word::RcInAlpha | Word::RcInRgb | Word::RcOutAlpha if idle => "stage not used".to_owned(),

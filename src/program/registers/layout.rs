@@ -23,13 +23,13 @@ impl Field {
     }
 
     /// Returns the value of the field in a word.
-    pub const fn of(self, word: u32) -> u32 {
+    pub const fn value_in(self, word: u32) -> u32 {
         word >> self.shift & self.most()
     }
 
     /// Returns whether the field is not 0 in a word.
     pub const fn is_set(self, word: u32) -> bool {
-        self.of(word) != 0
+        self.value_in(word) != 0
     }
 
     /// Returns a word with the given value in the field and 0 elsewhere.

@@ -20,7 +20,7 @@ pub fn decode(words: &RegisterWords) -> Result<Combiners, Vec<Refusal>> {
     let shared = [color(0), color(1)];
     let (word, index) = layout::config(chip);
     let config = words.get(word, index);
-    let (count, msb) = (layout::stages(chip).of(config), layout::mux_by_msb(chip).is_set(config));
+    let (count, msb) = (layout::stages(chip).value_in(config), layout::mux_by_msb(chip).is_set(config));
     let own = layout::OWN_CONSTANTS.map(|field| chip == Profile::Nv2a && field.is_set(config));
     let stages = (0..count as usize).map(|n| {
         let portion = |inputs, outputs, alpha| portion_of(words.get(inputs, n), words.get(outputs, n), alpha);
@@ -39,8 +39,8 @@ pub fn decode(words: &RegisterWords) -> Result<Combiners, Vec<Refusal>> {
         }
     });
     let (final0, final1) = (words.get(Word::RcFinal0, 0), words.get(Word::RcFinal1, 0));
-    let [a, b, c, d] = layout::BYTES.map(|field| final_of(field.of(final0), false));
-    let [e, f, g, _] = layout::BYTES.map(|field| field.of(final1));
+    let [a, b, c, d] = layout::BYTES.map(|field| final_of(field.value_in(final0), false));
+    let [e, f, g, _] = layout::BYTES.map(|field| field.value_in(final1));
     let [e, f] = [e, f].map(|byte| final_of(byte, false));
     Ok(Combiners {
         stages: stages.collect(),

@@ -118,7 +118,7 @@ impl<'t> Parser<'t> {
     }
 
     pub(super) fn expected(&mut self, what: &str) -> GivenUp {
-        let found = self.cursor.found("the end of the program");
+        let found = self.cursor.current_token("the end of the program");
         // What is missing at the end of a line is reported there, not where the next line starts.
         let between = self.cursor.text.get(self.cursor.end()..self.cursor.span().start).unwrap_or("");
         let (span, label) = if self.cursor.kind().is_none() || between.contains('\n') {

@@ -78,7 +78,7 @@ impl Parser<'_> {
     pub(super) fn expected(&mut self, what: &str) -> GivenUp {
         let (span, found) = match self.is_done() {
             true => (self.line_end()..self.line_end(), "the end of the line".to_owned()),
-            false => (self.cursor.span(), self.cursor.found("")),
+            false => (self.cursor.span(), self.cursor.current_token("")),
         };
         let message = format!("expected {what}, found {found}");
         let help = "write lines such as `mul r0.xyz, r1, c4.x`";

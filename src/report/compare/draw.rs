@@ -366,7 +366,7 @@ fn outcome<M: Method>(plan: &Plan, options: &CompareOptions, surface: &Surface<M
         out.drawn += u64::from(state.drawn);
         out.diverged += u64::from(state.drawn && state.diverged);
         if state.drawn && !state.diverged {
-            let shown = surface::kept(format, *word);
+            let shown = surface::final_channels(format, *word);
             let mut worst: Option<WorstPixel> = None;
             for channel in (0..4).filter(|n| kept >> n & 1 != 0) {
                 let (ideal, parts) = M::channel(shown[channel], surface.held[at][channel], &mut out.counts);

@@ -15,7 +15,7 @@ fn main() {
         corner(8.0, 0.0, VertexColor::Bytes([0, 255, 0, 255])),
         corner(0.0, 8.0, VertexColor::Bytes([0, 0, 255, 255])),
     ];
-    let draw = Draw { combiners, ..Draw::of(vertices) };
+    let draw = Draw { combiners, ..Draw::from_vertices(vertices) };
     let targets = vec![Target::new(8, 8, SurfaceFormat::A8R8G8B8)];
     let scene = Scene { profile: Profile::Nv2a, targets, draws: vec![draw], ..Scene::default() };
     match Plan::compile(&scene, &PlanOptions::default()) {

@@ -53,8 +53,9 @@ fn write(out: &mut String, plan: &Plan, draws: &[DrawExplanation], counted: Opti
         }
         write_cost(out, draw, counted.map(|all| &all[number]))?;
     }
-    let shaded =
-        Shaded::of(draws.iter().map(|draw| engine::Shaded { pixels: draw.cost.fragments, exact: draw.cost.exact }));
+    let shaded = Shaded::from_draws(
+        draws.iter().map(|draw| engine::Shaded { pixels: draw.cost.fragments, exact: draw.cost.exact }),
+    );
     writeln!(out, "\nshaded pixels: {}", shaded.text())?;
     writeln!(out, "\nall draws{:>32}{:>16}", "after pruning", "as asked")?;
     let (kept, asked) = (total(draws, |draw| &draw.cost), total(draws, |draw| &draw.asked));

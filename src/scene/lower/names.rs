@@ -74,7 +74,7 @@ impl<'a, S: Tabled<'a>> Valued<'a> for S {
 fn defined<'a, S: Tabled<'a>>(reader: &mut Reader<'a>, number: usize, may_be_name: bool) -> Option<S::Meaning> {
     let depth = reader.depth;
     let Table { index, definitions } = S::table(reader);
-    let place = index.place(number);
+    let place = index.span_of(number);
     let (raw, state) = &mut definitions[number];
     let raw = raw.as_other::<S>();
     match state {

@@ -68,7 +68,7 @@ pub(super) fn shader(
             let index = read.value;
             let help =
                 format!("write `constants: {{ \"c{index}\": Float(1, 0.5, 0, 1) }}` beside the text, or `def` in it");
-            reader.push(text.place(warning("NB0910", read.span, format!("c{index} has no value"), "is 0", help)));
+            reader.push(text.locate(warning("NB0910", read.span, format!("c{index} has no value"), "is 0", help)));
         }
     }
     Some(ApiProgram::Shader(Box::new(ShaderProgram { program, text, constants, bumps })))
@@ -117,7 +117,7 @@ impl ShaderProgram {
         let constants = self.constants.map(Option::unwrap_or_default);
         let context = Context { profile: reader.profile, signed, fog: around.fog, constants, bumps: self.bumps };
         let place = |findings: Vec<Diagnostic>| -> Vec<Diagnostic> {
-            findings.into_iter().map(|finding| self.text.place(finding)).collect()
+            findings.into_iter().map(|finding| self.text.locate(finding)).collect()
         };
         let lowered = pixel_shader::lower(&self.program, &context).map_err(place)?;
         let mut findings = Vec::new();
@@ -133,7 +133,7 @@ impl ShaderProgram {
                 continue;
             };
             findings
-                .extend(objection(reader, units, index, using, around.shader).map(|finding| self.text.place(finding)));
+                .extend(objection(reader, units, index, using, around.shader).map(|finding| self.text.locate(finding)));
             shader[index].operation = using.operation;
             (shader[index].previous, shader[index].mapping) = (using.previous, using.mapping);
         }

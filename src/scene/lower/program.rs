@@ -164,8 +164,8 @@ pub(super) fn pasted<P>(
     let Pasted { program, asides: found } = text.parsed(reader, pasted)?;
     for Aside { finding, field } in found {
         match field {
-            Some(field) => asides.push((text.place(finding), field)),
-            None => reader.push(text.place(finding)),
+            Some(field) => asides.push((text.locate(finding), field)),
+            None => reader.push(text.locate(finding)),
         }
     }
     Some(program)

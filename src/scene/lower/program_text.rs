@@ -71,7 +71,7 @@ impl ProgramText {
         match expand(&self.text, style, usize::try_from(reader.limits.program_bytes).unwrap_or(usize::MAX)) {
             Ok(None) => Some(self),
             Ok(Some(Expanded { text, places })) => Some(ProgramText { text, before: Some(places), ..self }),
-            Err(finding) => reader.refuse(self.place(finding)),
+            Err(finding) => reader.refuse(self.locate(finding)),
         }
     }
 
@@ -98,7 +98,7 @@ impl ProgramText {
 
     /// Records findings about the text.
     pub(super) fn push(&self, reader: &mut Reader<'_>, findings: Vec<Diagnostic>) {
-        findings.into_iter().for_each(|finding| reader.push(self.place(finding)));
+        findings.into_iter().for_each(|finding| reader.push(self.locate(finding)));
     }
 
     /// Unwraps what was read from the text. Returns `None` after recording the findings.
@@ -107,7 +107,7 @@ impl ProgramText {
     }
 
     /// Turns a finding about the text into one about the scene or the file.
-    pub(super) fn place(&self, mut finding: Diagnostic) -> Diagnostic {
+    pub(super) fn locate(&self, mut finding: Diagnostic) -> Diagnostic {
         if let Origin::File(file) = &self.origin {
             finding.span = finding.span.map(|span| self.before(span));
             for (span, _) in &mut finding.related {
@@ -125,7 +125,7 @@ impl ProgramText {
 
 /// Turns findings about a text, if there is one, into findings about the scene or a file.
 pub(super) fn placed(text: Option<&ProgramText>, findings: Vec<Diagnostic>) -> Vec<Diagnostic> {
-    let place = |finding| if let Some(text) = text { text.place(finding) } else { finding };
+    let place = |finding| if let Some(text) = text { text.locate(finding) } else { finding };
     findings.into_iter().map(place).collect()
 }
 

@@ -13,7 +13,7 @@ use ninebit::rop::surface;
 impl Targets<'_> {
     /// Adds the place of the target to a finding.
     pub(super) fn beside(&self, index: usize, finding: Diagnostic) -> Diagnostic {
-        let place = self.index.place(index);
+        let place = self.index.span_of(index);
         if place.is_empty() { finding } else { finding.related(place, "the target") }
     }
 }

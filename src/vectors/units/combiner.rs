@@ -164,7 +164,12 @@ impl Unit for ScaleBias {
         let mut direct = Direct::<i32, _>::new(&conditions.policies, &mut tap);
         let raw = direct.product(Rule::Cmb6, factor(inputs[2]), factor(inputs[3]));
         let value = general::output(&portion, raw, &mut direct);
-        results.copy_from_slice(&[wide(raw.sum), tap.of(Rule::Cmb6), tap.of(Rule::Cmb9), value.into()]);
+        results.copy_from_slice(&[
+            wide(raw.sum),
+            tap.last_result(Rule::Cmb6),
+            tap.last_result(Rule::Cmb9),
+            value.into(),
+        ]);
     }
 }
 
@@ -176,7 +181,7 @@ struct Tap {
 
 impl Tap {
     /// Returns the last result of a rule, or 0 if it was not applied.
-    fn of(&self, rule: Rule) -> i64 {
+    fn last_result(&self, rule: Rule) -> i64 {
         self.observed.iter().rev().find(|(observed, _)| *observed == rule).map_or(0, |(_, value)| *value)
     }
 }

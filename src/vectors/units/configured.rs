@@ -259,14 +259,14 @@ pub struct ConfiguredAddress {
 
 impl ConfiguredAddress {
     /// Returns the results of a unit of addresses for a coordinate in 1/256 texel.
-    fn of(&self, unit: &dyn Unit, coordinate: i64, conditions: &Conditions) -> Vec<i64> {
+    fn results_at(&self, unit: &dyn Unit, coordinate: i64, conditions: &Conditions) -> Vec<i64> {
         observed(unit, &[self.mode as i64, 0, self.size.into(), coordinate], conditions, &mut Silent)
     }
 
     /// Returns the texel, or -1 if it is the border colour.
     fn run(&self, inputs: &[i64], conditions: &Conditions, observer: &mut impl Observer) -> [i64; 1] {
         // A texel's first coordinate is 256 times its index.
-        let found = self.of(&NearestAddress, 256 * inputs[0], conditions);
+        let found = self.results_at(&NearestAddress, 256 * inputs[0], conditions);
         let texel = (found[1] != 0).then_some(found[2]);
         let operands = vec![plain("index", inputs[0]), plain("size", i64::from(self.size))];
         let mut step = address_step("address", "texel", self.mode, false, operands, texel.unwrap_or(inputs[0]));
@@ -303,8 +303,8 @@ impl ConfiguredCube {
         let row = [&[self.side.into()], inputs].concat();
         let found = observed(&CubeDirection, &row, conditions, observer);
         let clamped = ConfiguredAddress { mode: AddressMode::ClampToEdge, size: self.side };
-        let [x, y] = [found[1], found[2]].map(|c| clamped.of(&NearestAddress, c, conditions)[2]);
-        let [u, v] = [found[1], found[2]].map(|c| clamped.of(&LinearAddress, c, conditions));
+        let [x, y] = [found[1], found[2]].map(|c| clamped.results_at(&NearestAddress, c, conditions)[2]);
+        let [u, v] = [found[1], found[2]].map(|c| clamped.results_at(&LinearAddress, c, conditions));
         [found[0], found[1], found[2], x, y, u[3], u[5], v[3], v[5]]
     }
 }

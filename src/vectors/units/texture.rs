@@ -56,7 +56,7 @@ fn near(inputs: &mut [i64]) {
 }
 
 /// Addresses a texel index. Returns whether it is inside, and the texel.
-fn place(inputs: &[i64], index: i64) -> [i64; 2] {
+fn addressed(inputs: &[i64], index: i64) -> [i64; 2] {
     let found = address::address(named(inputs[0]), index, inputs[2] as u32, inputs[1] != 0);
     [found.is_some().into(), found.unwrap_or(0)]
 }
@@ -82,7 +82,7 @@ impl Unit for NearestAddress {
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         results[0] = filter::nearest(inputs[3]);
-        [results[1], results[2]] = place(inputs, results[0]);
+        [results[1], results[2]] = addressed(inputs, results[0]);
     }
 }
 
@@ -111,8 +111,8 @@ impl Unit for LinearAddress {
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         let (index, weight) = filter::linear(inputs[3]);
         (results[0], results[1]) = (index, weight.into());
-        [results[2], results[3]] = place(inputs, index);
-        [results[4], results[5]] = place(inputs, index + 1);
+        [results[2], results[3]] = addressed(inputs, index);
+        [results[4], results[5]] = addressed(inputs, index + 1);
     }
 }
 

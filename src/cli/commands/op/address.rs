@@ -30,8 +30,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let (line, checks) = (CommandLine::of_this_process(), texture_checks(&arguments.profile));
     let (kind, format) = (TextureKind::TwoDimensional, TextureFormat::A8R8G8B8);
     let findings = [
-        checks.sides(kind, format, [size, 1], line.place(&["size"])),
-        checks.address_mode(mode, line.place(&["mode"])),
+        checks.sides(kind, format, [size, 1], line.value_range(&["size"])),
+        checks.address_mode(mode, line.value_range(&["mode"])),
     ];
     line.accept(findings.into_iter().flatten(), context)?;
     let unit = ConfiguredAddress { mode, size };

@@ -50,9 +50,9 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let Arguments { equation, source_factor: source, destination_factor: destination, .. } = *arguments;
     let (profile, line) = (arguments.profile.profile, CommandLine::of_this_process());
     let findings = [
-        legality::surface::blend_equation(equation, profile, line.place(&["equation"])),
-        legality::surface::format(arguments.surface, profile, line.place(&["surface"])),
-        legality::surface::blending(arguments.surface, line.place(&["surface"])),
+        legality::surface::blend_equation(equation, profile, line.value_range(&["equation"])),
+        legality::surface::format(arguments.surface, profile, line.value_range(&["surface"])),
+        legality::surface::blending(arguments.surface, line.value_range(&["surface"])),
     ];
     line.accept(findings.into_iter().flatten(), context)?;
     let unit = ConfiguredBlend::new(Blend { equation, source, destination }, arguments.surface, profile)

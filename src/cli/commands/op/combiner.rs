@@ -91,7 +91,7 @@ fn stage(arguments: &Arguments, line: &CommandLine) -> (GeneralStage, Places) {
     let alpha = arguments.portion == Half::Alpha;
     let mut note = |part, names: &[&str]| {
         let place = Place::General { stage: 0, alpha, part };
-        line.place(names).into_iter().for_each(|span| places.set(place, span));
+        line.value_range(names).into_iter().for_each(|span| places.set(place, span));
     };
     let (portion, usual) = if alpha { (&mut stage.alpha, Component::Alpha) } else { (&mut stage.rgb, Component::Rgb) };
     for (n, (name, input)) in arguments.inputs.all().into_iter().enumerate() {

@@ -36,7 +36,7 @@ impl CommandLine {
 
     /// Returns the place of an option's value, or of the option itself if it has no value, or `None` if it is not given. `names` are
     /// without dashes.
-    pub(super) fn place(&self, names: &[&str]) -> Option<Range<usize>> {
+    pub(super) fn value_range(&self, names: &[&str]) -> Option<Range<usize>> {
         let word = |index: usize| self.words.get(index).map(|place| (place, &self.text[place.clone()]));
         (0..self.words.len()).rev().find_map(|index| {
             let (place, option) = word(index)?;
@@ -74,7 +74,7 @@ mod tests {
     fn values_and_flags_are_found() {
         let words = "op combiner --a tex0 --b=tex1.a --bias --scale 4 --index -3 --dot -o out --a tex2".split(' ');
         let line = CommandLine::new(words.map(OsString::from));
-        let found = |name: &str| line.place(&["other", name]).map(|place| &line.text[place]);
+        let found = |name: &str| line.value_range(&["other", name]).map(|place| &line.text[place]);
         assert_eq!(found("a"), Some("tex2"));
         assert_eq!((found("b"), found("bias"), found("scale")), (Some("tex1.a"), Some("--bias"), Some("4")));
         assert_eq!((found("index"), found("dot"), found("c")), (Some("-3"), Some("--dot"), None));

@@ -25,7 +25,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let side = arguments.size;
     let line = CommandLine::of_this_process();
     let (kind, format) = (TextureKind::Cube, TextureFormat::R5G6B5);
-    let finding = texture_checks(&arguments.profile).sides(kind, format, [side; 2], line.place(&["size"]));
+    let finding = texture_checks(&arguments.profile).sides(kind, format, [side; 2], line.value_range(&["size"]));
     line.accept(finding, context)?;
     let unit = ConfiguredCube { side };
     let how = "write `--direction X,Y,Z`, or give a table with `--inputs`";

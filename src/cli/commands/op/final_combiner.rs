@@ -53,7 +53,7 @@ fn program(arguments: &Arguments, line: &CommandLine) -> (Combiners, Places, Vec
     let others = [("e", arguments.e), ("f", arguments.f), ("g", arguments.g)];
     for (n, (name, input)) in arguments.inputs.all().into_iter().chain(others).enumerate() {
         let Some(input) = input else { continue };
-        let place = line.place(&[name]);
+        let place = line.value_range(&[name]);
         findings.extend(input.mapping.and_then(|mapping| legality::final_mapping(place.clone(), mapping)));
         place.into_iter().for_each(|place| places.set(Place::FinalInput(n), place));
         match state.inputs.get_mut(n) {

@@ -224,15 +224,15 @@ impl<'u> Setup<'u> {
         let values = self.columns.iter().map(value).collect::<Result<Vec<i64>, Failure>>()?;
         self.check(&values)
             .map_err(|message| Failure::usage(message, "`ninebit vectors export` shows rows that go together"))?;
-        let told = self.told(&values);
+        let told = self.compute_row(&values);
         common.format.print(|| told.text(), || format!("{:#}\n", told.value()))
     }
 
     /// Computes a row: results, steps, and what open rules would change.
-    pub(in crate::commands) fn told(&self, values: &[i64]) -> Told<'_> {
+    pub(in crate::commands) fn compute_row(&self, values: &[i64]) -> Told<'_> {
         let mut recorder = Recorder::default();
         let results = self.results(values, &mut recorder);
-        let mut steps = given(&self.columns, values, &recorder.steps);
+        let mut steps = given_steps(&self.columns, values, &recorder.steps);
         steps.append(&mut recorder.steps);
         Told { setup: self, steps, results, changed: self.alternatives(values) }
     }
@@ -274,7 +274,7 @@ impl Told<'_> {
             out.push_str("  result: nothing is written\n");
         } else {
             let results: Vec<String> =
-                self.results.iter().map(|(name, value)| format!("{name} {}", shown(value))).collect();
+                self.results.iter().map(|(name, value)| format!("{name} {}", result_text(value))).collect();
             let _ = writeln!(out, "  result: {}", results.join("  "));
         }
         out + &self.changes()
@@ -290,7 +290,8 @@ impl Told<'_> {
         let Some(all) = &self.changed else { return String::new() };
         let mut out = undecided::sentence(all.iter().map(|each| each.rule), "this result") + "\n";
         for Changed { policy, results, .. } in all {
-            let results: Vec<String> = results.iter().map(|(name, value)| format!("{name} {}", shown(value))).collect();
+            let results: Vec<String> =
+                results.iter().map(|(name, value)| format!("{name} {}", result_text(value))).collect();
             let _ = writeln!(out, "  {policy:<16} {}", results.join("  "));
         }
         out
@@ -311,7 +312,7 @@ impl Changed {
 }
 
 /// Returns steps for the given integers that the unit reads.
-fn given(columns: &[Column], values: &[i64], steps: &[Step]) -> Vec<Step> {
+fn given_steps(columns: &[Column], values: &[i64], steps: &[Step]) -> Vec<Step> {
     let mut made: HashSet<&str> = HashSet::new();
     let mut read: HashSet<&str> = HashSet::new();
     for step in steps {
@@ -321,7 +322,7 @@ fn given(columns: &[Column], values: &[i64], steps: &[Step]) -> Vec<Step> {
     let pairs = columns.iter().zip(values).filter(|(column, _)| read.contains(column.input.name.as_str()));
     pairs
         .map(|(column, value)| {
-            let step = Step::given("given", "", column.input.name.clone(), *value).per(column.per_one);
+            let step = Step::plain("given", "", column.input.name.clone(), *value).per(column.per_one);
             match column.per_one {
                 1 => step,
                 _ if column.signed_texel => step.ideal(<Paired>::texel(0, *value as i32, 128).observe().1),
@@ -332,6 +333,6 @@ fn given(columns: &[Column], values: &[i64], steps: &[Step]) -> Vec<Step> {
 }
 
 /// Returns the text of a result, without quotes.
-pub(super) fn shown(value: &Value) -> String {
+pub(super) fn result_text(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }

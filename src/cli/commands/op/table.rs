@@ -12,7 +12,7 @@ use ninebit_files::output::{Destination, write_stdout};
 use ninebit_files::read::{self, Kind, ReadError};
 use ninebit_vectors::table::FORMAT;
 
-use super::{Exit, Failure, Report, Setup, operation::shown as written};
+use super::{Exit, Failure, Report, Setup, operation::result_text as written};
 
 /// Largest number of refused rows that are listed.
 const MAX_ERRORS: usize = 16;

@@ -21,10 +21,10 @@ pub(super) fn picture(opened: &Opened, faces: Range<u32>, levels: Range<u32>) ->
     let column = rest.iter().map(|level| level.width()).max().unwrap_or(0);
     let below: u32 = rest.iter().map(|level| level.height()).sum();
     let mut picture = empty(first.width() + column, first.height().max(below));
-    place(&mut picture, (0, 0), first);
+    copy_into(&mut picture, (0, 0), first);
     let mut y = 0;
     for level in rest {
-        place(&mut picture, (first.width(), y), level);
+        copy_into(&mut picture, (first.width(), y), level);
         y += level.height();
     }
     picture
@@ -49,7 +49,7 @@ fn of_level(opened: &Opened, faces: &Range<u32>, level: u32) -> Rgba {
         let (column, row) = cross.copied().unwrap_or((face % across, face / across));
         let shown = show(face);
         let picture = picture.get_or_insert_with(|| empty(across * shown.width(), down * shown.height()));
-        place(picture, (column * shown.width(), row * shown.height()), &shown);
+        copy_into(picture, (column * shown.width(), row * shown.height()), &shown);
     }
     picture.unwrap_or_else(|| empty(1, 1))
 }
@@ -59,7 +59,7 @@ fn empty(width: u32, height: u32) -> Rgba {
 }
 
 /// Copies a picture into a larger one.
-fn place(picture: &mut Rgba, (x, y): (u32, u32), part: &Rgba) {
+fn copy_into(picture: &mut Rgba, (x, y): (u32, u32), part: &Rgba) {
     let width = part.width() as usize;
     for (row, pixels) in part.pixels().chunks(width).enumerate() {
         let at = (y as usize + row) * picture.width() as usize + x as usize;

@@ -45,13 +45,13 @@ pub(super) fn open(arguments: &Arguments, context: Context) -> Result<Opened, Fa
     let path = Path::new(&arguments.texture);
     if path.extension().is_some_and(|extension| extension == "ron") {
         let (scene, _) = load(path, &StateArguments::default(), context)?;
-        return Err(Failure::usage(format!("which texture of `{name}`?"), known(&scene, &name)));
+        return Err(Failure::usage(format!("which texture of `{name}`?"), advice(&scene, &name)));
     }
     of_file(arguments, path, name.clone())
 }
 
 /// Returns advice on how to name the textures of a scene.
-fn known(scene: &Scene, file: &str) -> String {
+fn advice(scene: &Scene, file: &str) -> String {
     let names: Vec<String> = scene.textures.iter().map(|texture| format!("`{file}:{}`", texture.name)).collect();
     if names.is_empty() { "it has none".to_owned() } else { format!("write {}", names.join(" or ")) }
 }
@@ -109,7 +109,7 @@ fn of_scene(arguments: &Arguments, name: String, end: usize, context: Context) -
     let (scene, plan) = load_to_draw(path, &StateArguments::default(), arguments.work, context)?;
     let Some(index) = scene.textures.iter().position(|known| known.name == texture) else {
         let message = format!("the scene has no texture `{texture}`");
-        return Err(Failure::usage(message, known(&scene, &shown::path(path))));
+        return Err(Failure::usage(message, advice(&scene, &shown::path(path))));
     };
     let texture = &scene.textures[index];
     let (texels, target) = match &texture.image {

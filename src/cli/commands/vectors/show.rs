@@ -31,7 +31,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Some(row) = table.rows.first() else { return Err(Failure::fault("a row was found and is not there")) };
     let conditions = Conditions { profile: contents.profile, policies: Policies::DEFAULT };
     let setup = op::unit_setup(contents.unit, conditions)?;
-    let told = setup.told(&row.inputs);
+    let told = setup.compute_row(&row.inputs);
     let model = table.writer.row(&row.inputs, row.origin).results;
     let (inputs, results) = (table.writer.inputs(), table.writer.results());
     let last: Vec<(&str, &str)> = {

@@ -56,7 +56,7 @@ fn difference(difference: &Difference) -> Value {
         "drawn": difference.drawn,
         "cause": cause,
         "remarks": difference.remarks,
-        "pixels": difference.known.as_ref().map(known),
+        "pixels": difference.known.as_ref().map(known_difference),
     })
 }
 
@@ -70,7 +70,7 @@ pub(crate) fn histograms<'h>(channels: impl IntoIterator<Item = (&'static str, &
     channels.into_iter().map(channel).collect()
 }
 
-fn known(known: &Comparison) -> Value {
+fn known_difference(known: &Comparison) -> Value {
     let difference = &known.difference;
     let first = &known.first;
     json!({

@@ -64,6 +64,7 @@ int main(int count, char **names)
         for (uint32_t k = 0; k < triangles; k++) {
             struct ninebit_vertex vertex[3];
             struct ninebit_triangle triangle;
+            if (sizeof triangle != 4 * 176) return 5;
             memset(&triangle, 0, sizeof triangle);
             memcpy(vertex, given, sizeof vertex);
             given += sizeof vertex / 4;
@@ -153,7 +154,7 @@ impl Printed<'_> {
         let (_, setup) = &self.draws[number];
         for k in 0..3 {
             let before = out.len();
-            let of = |attribute: Attribute| attribute.of(context, k) as u32;
+            let of = |attribute: Attribute| attribute.value_of(context, k) as u32;
             out.extend([Attribute::Position(0), Attribute::Position(1), Attribute::Z, Attribute::W].map(of));
             (0..8).for_each(|n| out.push(of(Attribute::Color(n / 4, n % 4))));
             (0..16).for_each(|n| out.push(of(Attribute::Coordinate(n / 4, n % 4))));

@@ -1,4 +1,4 @@
-//! Draws a scene by its printed WGSL.
+//! Draws a scene by its printed WGSL, and by its shaders of GLSL.
 
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -10,7 +10,7 @@ use ninebit::engine::walk::triangles;
 use ninebit::engine::{TextureWords, cleared};
 use ninebit::frame::Frames;
 use ninebit::raster::stroke::Figure;
-use ninebit_lower::{Field, Language, Part};
+use ninebit_lower::{Field, Language, Part, Shaders};
 
 use crate::drawn::Printed;
 use crate::setting::{GLSL_COMPILER, bytes, drawing, run};
@@ -91,6 +91,25 @@ impl Printed<'_> {
     /// # Errors
     /// What the driver says.
     pub fn shaded(&self, folder: &Path) -> Result<Frames, String> {
+        std::fs::write(folder.join("whole.wgsl"), self.wgsl_text()).unwrap();
+        self.drawn(folder, "whole.py")
+    }
+
+    /// Draws by OpenGL, which rasterises.
+    ///
+    /// # Errors
+    /// What the driver says.
+    pub fn paired(&self, folder: &Path) -> Result<Frames, String> {
+        for (n, draw) in self.named().iter().enumerate() {
+            let Shaders { vertex, fragment } = Shaders::new(draw);
+            std::fs::write(folder.join(format!("draw{n}.vert")), vertex).unwrap();
+            std::fs::write(folder.join(format!("draw{n}.frag")), fragment).unwrap();
+        }
+        self.drawn(folder, "pair.py")
+    }
+
+    /// Draws by a script.
+    fn drawn(&self, folder: &Path, script: &str) -> Result<Frames, String> {
         let plan = self.plan;
         let mut frames = cleared(plan);
         let mut given = self.targets(&frames);
@@ -98,10 +117,12 @@ impl Printed<'_> {
             let before = self.before(number);
             let words = TextureWords::new(plan, &plan.draws()[number..=number], &before.surfaces);
             let window = draw.windows.first().map_or([0; 4], |w| [w.x, w.y, w.x + w.width, w.y + w.height]);
-            let mut all = Vec::new();
+            let (setup, mut all, mut vertices) = (&self.draws[number].1, Vec::new(), Vec::new());
             for ((rows, _), n) in triangles(draw, (0, plan.targets()[draw.target].height.into())) {
                 if let Some(context) = TriangleContext::new(plan, draw, n, rows) {
-                    all.extend(triangle(&self.draws[number].1.constants(&context)));
+                    let number = vertices.len() as u32 / 9;
+                    all.extend(triangle(&setup.constants(&context)));
+                    vertices.extend(context.positions().iter().flat_map(|[x, y]| [*x as u32, *y as u32, number]));
                 }
             }
             let mut memory = vec![0; 4];
@@ -111,14 +132,13 @@ impl Printed<'_> {
             }
             given.push(draw.target as u32);
             given.extend(window);
-            for part in [all, memory] {
+            for part in [all, memory, vertices] {
                 given.push(part.len() as u32);
                 given.extend(part);
             }
         }
-        std::fs::write(folder.join("whole.wgsl"), self.wgsl_text()).unwrap();
         std::fs::write(folder.join("draws.bin"), bytes(&given)).unwrap();
-        run(&mut drawing("whole.py"), folder)?;
+        run(&mut drawing(script), folder)?;
         self.read(folder, &mut frames);
         Ok(frames)
     }
@@ -127,19 +147,17 @@ impl Printed<'_> {
 /// Returns the constants of a triangle in the layout of the printed structure.
 fn triangle(constants: &HashMap<Field, i64>) -> Vec<u32> {
     let mut fields: Vec<Field> = (0..3).map(Field::EdgeX).chain((0..3).map(Field::EdgeY)).collect();
-    fields.extend((0..3).map(Field::Edge).chain((0..3).map(Field::Owns)).chain((0..3).map(Field::Ratio)));
-    fields.extend((0..24).map(|n| Field::Color(n / 12, n / 3 % 4, n % 3)));
+    fields.extend((0..3).map(Field::Edge).chain((0..3).map(Field::Ratio)));
     fields.extend((0..16).flat_map(|n| Part::ALL.map(|part| Field::Coordinate(n / 4, n % 4, part))));
-    fields.extend(Part::ALL.map(Field::Fog).into_iter().chain([Field::FogByte]).chain((0..3).map(Field::Depth)));
-    fields.extend((0..9).map(|n| Field::DepthDifference(n / 3, n % 3)).chain([Field::Offset, Field::OffsetExponent]));
+    fields.extend(Part::ALL.map(Field::Fog).into_iter().chain((0..3).map(Field::Depth)));
+    fields.extend((0..9).map(|n| Field::DepthDifference(n / 3, n % 3)).chain([Field::Offset]));
+    fields.extend((0..24).map(|n| Field::Color(n / 12, n / 3 % 4, n % 3)));
+    fields.extend((0..3).map(Field::Owns).chain([Field::FogByte, Field::OffsetExponent]));
     let mut out: Vec<u32> = Vec::new();
     for field in fields {
-        let words = field.words(constants.get(&field).copied().unwrap_or(0));
-        // Pairs stand at even places.
-        out.resize(out.len().next_multiple_of(words.len()), 0);
-        out.extend(words);
+        out.extend(field.words(constants.get(&field).copied().unwrap_or(0)));
     }
     out.push(0);
-    assert_eq!(out.len(), 178);
+    assert_eq!(out.len(), 176);
     out
 }

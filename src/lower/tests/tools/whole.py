@@ -29,11 +29,11 @@ layout = device.create_bind_group_layout(entries=entries)
 module = device.create_shader_module(code=open("whole.wgsl").read())
 for draw in range(draws):
     target, *window = (int(n) for n in take(5))
-    triangles, memory = (take(int(take(1)[0])) for _ in range(2))
+    triangles, memory, _ = (take(int(take(1)[0])) for _ in range(3))
     if not len(triangles):
         continue
     width, pixels, buffers = surfaces[target]
-    bounds = struct.pack("<8I", width, pixels // width, *window, len(triangles) // 178, 0)
+    bounds = struct.pack("<8I", width, pixels // width, *window, len(triangles) // 176, 0)
     read = [device.create_buffer_with_data(data=data, usage=STORAGE) for data in (bounds, triangles.tobytes(), memory.tobytes())]
     pipeline = device.create_compute_pipeline(
         layout=device.create_pipeline_layout(bind_group_layouts=[layout]), compute={"module": module, "entry_point": f"main{draw}"}

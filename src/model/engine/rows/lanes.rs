@@ -1,8 +1,8 @@
 //! The lanes of a block: one number for each of up to 384 pixels, and the arithmetic that loops over them use.
 #![allow(clippy::float_arithmetic, reason = "floors and roundings to whole numbers, which are exact")]
 
+use crate::raster::doubles::lost_by_sum;
 use crate::raster::interpolate::COORDINATE_LIMIT;
-use crate::raster::weights::lost_by_sum;
 use std::ops::{Deref, DerefMut};
 
 /// Number of pixels of a block.

@@ -94,7 +94,7 @@ fn compare(reader: &mut Reader<'_>, (written, text): &Program, given: &[Option<S
         } else {
             format!("nothing reads {}: is that the number that is meant?", given.join(", "))
         };
-        reader.push(text.place(finding("NB0387", place, format!("{name} {verb} no value"), "read here", help)));
+        reader.push(text.locate(finding("NB0387", place, format!("{name} {verb} no value"), "read here", help)));
     }
     for (place, first, _) in unread {
         let message = format!("the constant c{first} is not used");
@@ -131,7 +131,7 @@ fn meanings(reader: &mut Reader<'_>, (written, text): &Program, entries: &[Entry
                 }
             };
             let note = format!("the scene's matrix fills c{first} to c{}", first + 3);
-            reader.push(text.place(finding.note(note).help("check the number: a matrix takes four constants")));
+            reader.push(text.locate(finding.note(note).help("check the number: a matrix takes four constants")));
         }
     }
 }

@@ -85,7 +85,7 @@ pub(super) fn sources<'a>(
                     let example = if mesh { "Tangent" } else { "TextureCoordinates1" };
                     let help = format!("add it: `inputs: (v{register}: {example})`");
                     let note = "without being told, v0 is the position, v3 the normal, v7 the texture coordinates, of listed vertices v5 and v6 the colours";
-                    reader.push(text.place(finding("NB0387", place, message, "read here", help).note(note)));
+                    reader.push(text.locate(finding("NB0387", place, message, "read here", help).note(note)));
                 }
                 usual
             }

@@ -104,8 +104,8 @@ pub(crate) fn interpolate(
     for ((sampler, coordinates), place) in compiled.samplers.iter().zip(&functions.coordinates).zip(places) {
         if sampler.interpolates() {
             let own = if *is_estimated { &mut undecided.place } else { &mut *place };
-            if !functions.sprite.place(sampler, pixels, all.clone(), own) {
-                coordinates.place(sampler, weights, all.clone(), own);
+            if !functions.sprite.compute_places(sampler, pixels, all.clone(), own) {
+                coordinates.compute_places(sampler, weights, all.clone(), own);
             }
             coordinates.place_third(sampler, weights, all.clone(), own);
             if *is_estimated {

@@ -72,7 +72,7 @@ mod tests {
     fn ratios_are_those_of_the_definition() {
         let mut random = Random::seeded(16);
         let mut triangle = Triangle::default();
-        assert!(triangle.place([0, 160, 0], [0, 0, 160]));
+        assert!(triangle.place_corners([0, 160, 0], [0, 0, 160]));
         for round in 0..100_000 {
             let mut w = || f32::from_bits((107 + (random.bits() % 40) as u32) << 23 | (random.bits() >> 41) as u32);
             let w = [w(), w(), w()];

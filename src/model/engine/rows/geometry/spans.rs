@@ -91,7 +91,7 @@ mod tests {
             if round % 7 == 0 {
                 y = [0, 1, 2].map(|k| (x[k] / 2 + (random.bits() % 9) as i64).clamp(-65_535, 65_535));
             }
-            if !triangle.place(x, y) {
+            if !triangle.place_corners(x, y) {
                 continue;
             }
             let shape = Shape::new(&triangle, [1.0; 3], (false, Profile::Nv2a), false);

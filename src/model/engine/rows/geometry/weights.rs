@@ -11,7 +11,8 @@
 
 use super::shape::Shape;
 use crate::engine::rows::lanes::PerLane;
-use crate::raster::weights::{Number, completed, edge_numbers, likely_reciprocal, shares};
+use crate::raster::doubles::likely_reciprocal;
+use crate::raster::weights::{Number, completed, edge_numbers, shares};
 use std::ops::Range;
 
 /// Number of lanes of which a pass is done before the next pass begins, so that what it hands on stays in the nearest cache.
@@ -162,7 +163,7 @@ mod tests {
         for round in 0..3_000 {
             let size = 32 << (random.bits() % 12);
             let mut at = || random.below(size) as i64;
-            if !triangle.place([at(), at(), at()], [at(), at(), at()]) {
+            if !triangle.place_corners([at(), at(), at()], [at(), at(), at()]) {
                 continue;
             }
             let mut w = || 0.25 + (random.bits() >> 40) as f32 / (1 << 20) as f32;

@@ -54,7 +54,13 @@ impl Coordinates {
 
     /// Computes where lanes sample, or the coordinates that a stage of the texture shader moves.
     #[inline(always)]
-    pub(crate) fn place(&self, sampler: &Sampler, weights: Weighted<'_>, lanes: Range<usize>, place: &mut Place) {
+    pub(crate) fn compute_places(
+        &self,
+        sampler: &Sampler,
+        weights: Weighted<'_>,
+        lanes: Range<usize>,
+        place: &mut Place,
+    ) {
         if sampler.moves {
             return self.components(weights, lanes, place);
         }

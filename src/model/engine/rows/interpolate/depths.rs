@@ -12,7 +12,8 @@ use crate::engine::rows::geometry::weights::{CHUNK, Passes, Pixels};
 use crate::engine::rows::lanes::{PerLane, floor_within, larger};
 use crate::raster::binary::Binary;
 use crate::raster::depth;
-use crate::raster::weights::{Number, difference, dominance, lost_by_sum, ratios, shares};
+use crate::raster::doubles::lost_by_sum;
+use crate::raster::weights::{Number, difference, dominance, ratios, shares};
 use crate::state::DepthFormat;
 use std::ops::Range;
 

@@ -50,7 +50,13 @@ impl Sprite {
 
     /// Computes where lanes sample. Returns whether the sampler has coordinates of a point.
     #[inline(always)]
-    pub(crate) fn place(&self, sampler: &Sampler, pixels: &Pixels, lanes: Range<usize>, place: &mut Place) -> bool {
+    pub(crate) fn compute_places(
+        &self,
+        sampler: &Sampler,
+        pixels: &Pixels,
+        lanes: Range<usize>,
+        place: &mut Place,
+    ) -> bool {
         if !(self.is_set && sampler.is_sprite) {
             return false;
         }

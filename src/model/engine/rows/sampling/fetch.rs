@@ -100,7 +100,7 @@ impl Reader<'_> {
         lods[..count].fill(lod::LEAST);
         quads.each_lane(|lane, quad| lods[lane] = of_quads[quad]);
         let Place { reads, fine, images, .. } = place;
-        reads.place((unit, table), count, fine, sampler.has_images().then_some(images), placing);
+        reads.compute_fetches((unit, table), count, fine, sampler.has_images().then_some(images), placing);
     }
 }
 

@@ -50,7 +50,7 @@ impl MipFetches {
     /// Computes the fetches of the first lanes from their levels of detail, which become biased, and from their coordinates on level 0 in 1/65536
     /// texel. `images` are faces.
     #[inline(always)]
-    pub(crate) fn place(
+    pub(crate) fn compute_fetches(
         &mut self,
         (unit, table): (&PlannedUnit, &Table),
         count: usize,

@@ -57,7 +57,7 @@ pub(crate) enum Projection {
 }
 
 impl Projection {
-    pub(crate) fn of(sampler: &Sampler) -> Projection {
+    pub(crate) fn from_sampler(sampler: &Sampler) -> Projection {
         match (sampler.depends, sampler.cube) {
             (false, false) => Projection::Divided,
             (false, true) => Projection::Cube,
@@ -110,7 +110,7 @@ impl Quads {
         place: &Place,
         out: &mut Vec<T>,
     ) {
-        let (projection, sides) = (Projection::of(sampler), sampler.sides);
+        let (projection, sides) = (Projection::from_sampler(sampler), sampler.sides);
         let count = self.all.iter().map(|quads| quads.count).sum();
         let rounded = whole_steps(count);
         self.far[..rounded].fill(0);
