@@ -10,7 +10,8 @@ use ninebit::state::{
 use ninebit_program::registers::color_of;
 
 use super::view::View;
-use crate::class;
+use crate::celsius;
+use crate::class::{self, Family};
 use crate::gap::Gap;
 use crate::memory::{self, Layout, Memory};
 
@@ -136,6 +137,10 @@ pub(crate) fn image(view: &mut View<'_>, unit: usize) -> Option<Image> {
         view.note(Gap::NotModelled(format!("texture format 0x{code:02x} of unit {unit}")));
         return None;
     };
+    if view.family() == Family::Celsius && !celsius::begins_at_corners(view.own(celsius::TEX_FORMAT + 4 * unit as u32))
+    {
+        view.note(Gap::NotModelled(format!("texel coordinates from the texels' centres at unit {unit}")));
+    }
     let cube = format >> 2 & 1 != 0;
     let dimensions = format >> 4 & 0xf;
     if linear {
@@ -325,6 +330,9 @@ pub(crate) fn unit(view: &mut View<'_>, unit: usize, image: &Image, projects: bo
     }
     let anisotropy = 1 << (control >> 4 & 3);
     state.anisotropy = anisotropy;
+    if control >> 2 & 1 != 0 {
+        view.note(Gap::NotModelled(format!("texels of alpha 0 that remove the pixel at unit {unit}")));
+    }
     let mode =
         [None, Some(ColorKeyMode::Alpha), Some(ColorKeyMode::Color), Some(ColorKeyMode::Texel)][(control & 3) as usize];
     if let Some(mode) = mode {
