@@ -120,6 +120,21 @@ fn a_log_without_draws_is_explained_by_its_state() {
     }
 }
 
+/// The page of an imported frame has each draw's picture, and what is incomplete beside it.
+#[test]
+fn the_inspector_marks_incomplete_draws() {
+    let bench = Bench::new();
+    let vertices = "0x194c 0xff0000ff\n0x1500 0x0\n0x1504 0x0\n0x1508 0x0\n".repeat(3);
+    let whole = LOG.replace("[0] 0x5\n", &format!("[0] 0x5\n{vertices}")).replace("[0] 0x6\n", "[0] 0x4\n");
+    bench.write("whole.log", &whole);
+    bench.run("import whole.log -o frames").text();
+    bench.run("inspect frames/frame-0000.ron -o page.html").text();
+    let page = std::fs::read_to_string(bench.path("page.html")).unwrap();
+    let marks = page.split("\"steps\":").nth(1).unwrap();
+    let marks = &marks[..marks.len().min(4000)];
+    assert!(marks.contains("SET_COMPOSITE_MATRIX[0] to") && marks.contains("\"picture\":\"iVBOR"), "{marks}");
+}
+
 #[test]
 fn wrong_inputs_are_refused() {
     let bench = Bench::new();
