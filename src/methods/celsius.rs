@@ -3,9 +3,7 @@
 //! Most words are the same ([`Family::own`] knows their numbers). The others, and what the class does not have, stand here. Sources: the
 //! register database and the hardware tests of envytools (MIT), for the origin of the window Mesa's nouveau driver (MIT).
 
-use crate::class::{self, Family};
-use crate::draw::shader::{CUBE, TWO};
-use crate::draw::texture::of_unit;
+use crate::class::{self, Family, STAGE_CUBE, STAGE_TWO, of_unit};
 use crate::vertex::attribute;
 
 /// TEX_FORMAT of unit 0.
@@ -164,7 +162,7 @@ fn filter(word: u32) -> u32 {
 
 /// A bit for each colour says that the vertex gives it; specular light may take the secondary one.
 fn material(word: u32, vertex_specular: bool) -> u32 {
-    let source = |bit: u32, source: u32| (word >> bit & 1) * source << (2 * bit);
+    let source = |bit: u32, source: u32| ((word >> bit & 1) * source) << (2 * bit);
     source(0, 1) | source(1, 1) | source(2, 1) | source(3, if vertex_specular { 2 } else { 1 })
 }
 
@@ -199,7 +197,7 @@ fn stages(own: &impl Fn(u32) -> Option<u32>) -> Known {
         let Some(control) = own(enable) else { return Known::Unset(enable) };
         if control >> 30 & 1 != 0 {
             let cube = own(format).is_some_and(|format| format >> 2 & 1 != 0);
-            word |= if cube { CUBE } else { TWO } << (5 * unit);
+            word |= if cube { STAGE_CUBE } else { STAGE_TWO } << (5 * unit);
         }
     }
     Known::Word(word)
@@ -254,7 +252,7 @@ mod tests {
         assert_eq!(word(class::SET_EYE_VECTOR, &[]), Known::Absent);
         assert_eq!(word(class::SET_BLEND_ENABLE, &[]), Known::Unset(0x304));
         assert_eq!(word(class::SET_SHADER_STAGE_PROGRAM, &[]), Known::Unset(0x228));
-        assert_eq!(word(class::SET_SHADER_STAGE_PROGRAM, &[(0x228, 1 << 30), (0x22c, 0)]), Known::Word(TWO));
+        assert_eq!(word(class::SET_SHADER_STAGE_PROGRAM, &[(0x228, 1 << 30), (0x22c, 0)]), Known::Word(STAGE_TWO));
         assert_eq!(word(class::SET_VERTEX_DATA_ARRAY_FORMAT + 24, &[]), Known::Word(NO_ARRAY));
     }
 

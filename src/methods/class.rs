@@ -292,6 +292,18 @@ numbers! {
     SET_TRANSFORM_PROGRAM_START = 0x1ea0, SET_TRANSFORM_CONSTANT_LOAD = 0x1ea4,
 }
 
+/// Returns the method of texture unit `unit` for the method of unit 0.
+pub(crate) fn of_unit(method: u32, unit: usize) -> u32 {
+    method + 64 * unit as u32
+}
+
+/// Code of a projected texture of two dimensions in SET_SHADER_STAGE_PROGRAM.
+pub(crate) const STAGE_TWO: u32 = 1;
+/// Code of a projected texture of three dimensions.
+pub(crate) const STAGE_THREE: u32 = 2;
+/// Code of a cube map.
+pub(crate) const STAGE_CUBE: u32 = 3;
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,9 +6,9 @@ use ninebit_program::registers::layout::{config, stages};
 use ninebit_program::registers::{Description, RegisterWords, Word as RegisterWord, describe, raster};
 
 use crate::celsius::Known;
-use crate::class::{self, Family, METHOD_BYTES, Treatment};
+use crate::class::{self, Family, METHOD_BYTES, Treatment, of_unit};
 use crate::draw::raster::{FOG_MODES, POLYGON_MODES};
-use crate::draw::texture::{FORMATS, of_unit};
+use crate::draw::texture::FORMATS;
 use crate::state::State;
 
 /// A word of state with its meaning.

@@ -335,8 +335,7 @@ impl Builder {
         for index in 0..TEXTURE_UNITS {
             let mut stage = shader::stage(view, index);
             if stage.operation.samples() {
-                let enabled =
-                    view.get(crate::draw::texture::of_unit(class::SET_TEXTURE_CONTROL0, index)) >> 30 & 1 != 0;
+                let enabled = view.get(class::of_unit(class::SET_TEXTURE_CONTROL0, index)) >> 30 & 1 != 0;
                 draw.textures[index] = if enabled { self.unit(view, memory, index, draw.target) } else { None };
                 if draw.textures[index].is_none() {
                     stage.operation = ShaderOperation::None;
@@ -355,7 +354,7 @@ impl Builder {
 
     fn unit(&mut self, view: &mut View<'_>, memory: &Memory, index: usize, target: usize) -> Option<TextureUnit> {
         let image = image(view, index)?;
-        let projects = shader::code(view, index) == shader::THREE;
+        let projects = shader::code(view, index) == class::STAGE_THREE;
         let mut state = unit(view, index, &image, projects);
         state.texture = match self.shown(view, &image, target) {
             Some(texture) => texture,

@@ -5,8 +5,7 @@ use std::collections::BTreeMap;
 use ninebit::state::Profile;
 use ninebit_program::registers::Word as RegisterWord;
 
-use crate::class::{self, CELSIUS, Family, KELVIN, Treatment};
-use crate::draw::texture::of_unit;
+use crate::class::{self, CELSIUS, Family, KELVIN, Treatment, of_unit};
 use crate::dumps::{Dumps, Ram, TextureDump};
 use crate::frame::{Builder, Frame};
 use crate::log::{Entry, Event, Fault, Reader, Write};

@@ -4,9 +4,8 @@ use ninebit::state::{Combiners, DotMapping, Named, Profile, ShaderOperation, Sha
 use ninebit_program::registers::layout::{OWN_CONSTANTS, config, stages};
 use ninebit_program::registers::{RegisterWords, Word, decode};
 
-use super::texture::of_unit;
 use super::view::View;
-use crate::class;
+use crate::class::{self, STAGE_CUBE, STAGE_THREE, STAGE_TWO, of_unit};
 use crate::gap::Gap;
 
 /// The codes of the dot mappings.
@@ -18,13 +17,6 @@ pub(crate) const DOT_MAPPINGS: [(DotMapping, u32); 6] = [
     (DotMapping::Hilo1, 4),
     (DotMapping::HiloHemisphere, 7),
 ];
-
-/// Code of a projected texture of two dimensions in SET_SHADER_STAGE_PROGRAM.
-pub(crate) const TWO: u32 = 1;
-/// Code of a projected texture of three dimensions.
-pub(crate) const THREE: u32 = 2;
-/// Code of a cube map.
-pub(crate) const CUBE: u32 = 3;
 
 /// Returns the code of a stage.
 pub(crate) fn code(view: &mut View<'_>, unit: usize) -> u32 {
@@ -43,7 +35,7 @@ pub(crate) fn stage(view: &mut View<'_>, unit: usize) -> ShaderStage {
     };
     stage.operation = match code {
         0 => Op::None,
-        TWO | THREE | CUBE => Op::Sample,
+        STAGE_TWO | STAGE_THREE | STAGE_CUBE => Op::Sample,
         4 => Op::PassThrough,
         5 => {
             let bits = view.get(class::SET_SHADER_CLIP_PLANE_MODE) >> (4 * unit);

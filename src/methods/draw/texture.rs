@@ -11,7 +11,7 @@ use ninebit_program::registers::color_of;
 
 use super::view::View;
 use crate::celsius;
-use crate::class::{self, Family};
+use crate::class::{self, Family, of_unit};
 use crate::gap::Gap;
 use crate::memory::{self, Layout, Memory};
 
@@ -121,11 +121,6 @@ pub(crate) struct Image {
     pub(crate) border: bool,
     /// Bytes from row to row; `None` if it is swizzled or compressed.
     pub(crate) pitch: Option<u32>,
-}
-
-/// Returns the method of unit `unit` for the method of unit 0.
-pub(crate) fn of_unit(method: u32, unit: usize) -> u32 {
-    method + 64 * unit as u32
 }
 
 /// Reads the image of a unit; `None` if the model has no such texture, which is noted.

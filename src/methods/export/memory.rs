@@ -64,8 +64,8 @@ impl MemoryMap {
                 let image = words.as_ref().map_or(Vec::new(), |words| bytes(words, format, size, layout));
                 placed.reserve(pitch * target.height, &image)
             };
-            let (contents, depth_contents) = match scene.profile {
-                Profile::Nv2a => (target.contents.clone(), target.depth_contents.clone()),
+            let [contents, depth_contents] = match scene.profile {
+                Profile::Nv2a => [target.contents.clone(), target.depth_contents.clone()],
                 Profile::Nv10 => initial(target),
             };
             let colors = put(&contents, raw(target.format), pitch(target.width, target.format.bytes()))?;
@@ -111,14 +111,14 @@ impl MemoryMap {
 }
 
 /// Returns the words that a target's colours and depths begin as, its clears among them.
-fn initial(target: &Target) -> (Option<Arc<[u32]>>, Option<Arc<[u32]>>) {
+fn initial(target: &Target) -> [Option<Arc<[u32]>>; 2] {
     let all = |word: u32| vec![word; target.width as usize * target.height as usize].into();
     let colors = || all(rop::surface::pack(target.format, target.clear_color));
     let depths = target.depth.map(|depth| {
         let word = depth_stencil(depth.clear, depth.clear_stencil);
         target.depth_contents.clone().unwrap_or_else(|| all(word))
     });
-    (Some(target.contents.clone().unwrap_or_else(colors)), depths)
+    [Some(target.contents.clone().unwrap_or_else(colors)), depths]
 }
 
 /// Returns the bytes of a texture as they lie in memory.

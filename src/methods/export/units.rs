@@ -11,9 +11,9 @@ use super::memory::{MemoryMap, pitch};
 use super::state::code;
 use super::{ExportError, Words, refuse};
 use crate::celsius;
-use crate::class::{self, Family};
-use crate::draw::shader::{CUBE, DOT_MAPPINGS, THREE, TWO};
-use crate::draw::texture::{ADDRESS_MODES, FORMATS, MIN_FILTERS, SHADOW_FUNCTIONS, of_unit};
+use crate::class::{self, Family, STAGE_CUBE, STAGE_THREE, STAGE_TWO, of_unit};
+use crate::draw::shader::DOT_MAPPINGS;
+use crate::draw::texture::{ADDRESS_MODES, FORMATS, MIN_FILTERS, SHADOW_FUNCTIONS};
 
 /// Sets the units, the shader and the combiners of a draw.
 pub(super) fn units(words: &mut Words, scene: &Scene, placed: &MemoryMap, draw: &Draw) -> Result<(), ExportError> {
@@ -40,7 +40,8 @@ pub(super) fn units(words: &mut Words, scene: &Scene, placed: &MemoryMap, draw: 
     }
     if words.family == Family::Celsius {
         // What samples and how is said by the units.
-        return Ok(combiners(words, scene, draw));
+        combiners(words, scene, draw);
+        return Ok(());
     }
     words.set(class::SET_SHADER_STAGE_PROGRAM, programs);
     words.set(class::SET_DOT_RGBMAPPING, mappings);
@@ -68,10 +69,10 @@ fn operation(
         Op::None => 0,
         Op::Sample => match kind {
             None => 0,
-            Some((TextureKind::Cube, _)) => CUBE,
-            Some((TextureKind::ThreeDimensional, _)) => THREE,
-            Some((_, Some(shadow))) if shadow.reference == ShadowReference::R => THREE,
-            _ => TWO,
+            Some((TextureKind::Cube, _)) => STAGE_CUBE,
+            Some((TextureKind::ThreeDimensional, _)) => STAGE_THREE,
+            Some((_, Some(shadow))) if shadow.reference == ShadowReference::R => STAGE_THREE,
+            _ => STAGE_TWO,
         },
         Op::PassThrough => 4,
         Op::CullFragment { .. } => 5,

@@ -34,10 +34,16 @@ enum Form {
     Stream(Words),
 }
 
+impl Default for Reader {
+    fn default() -> Reader {
+        Reader::of_class(KELVIN)
+    }
+}
+
 impl Reader {
     /// Makes a reader at the beginning of a log, whose lines are of Kelvin unless they say otherwise.
     pub fn new() -> Reader {
-        Reader::of_class(KELVIN)
+        Reader::default()
     }
 
     /// Makes a reader of a log whose lines are of a class unless they say otherwise.

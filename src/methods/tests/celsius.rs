@@ -67,7 +67,7 @@ fn color(draw: usize, corner: usize) -> [u8; 4] {
 }
 
 fn texture() -> Texture {
-    Texture::from_words(TextureFormat::R5G6B5, [8, 8], (0..64).map(|n| n * 1031 & 0xffff).collect::<Vec<u32>>())
+    Texture::from_words(TextureFormat::R5G6B5, [8, 8], (0..64).map(|n| (n * 1031) & 0xffff).collect::<Vec<u32>>())
 }
 
 fn combiners() -> Combiners {
@@ -151,7 +151,7 @@ fn played() -> Program {
         ("RT_HORIZ", SIDE << 16),
         ("RT_VERT", SIDE << 16),
         ("RT_FORMAT", 8 | 1 << 8),
-        ("RT_PITCH", SIDE * 4 | (SIDE * 4) << 16),
+        ("RT_PITCH", (SIDE * 4) | ((SIDE * 4) << 16)),
         ("COLOR_OFFSET", surface),
         ("CONFIG", 0x10_0001),
         ("VIEWPORT_CLIP_MODE", 0),
