@@ -83,6 +83,59 @@ fn draws_are_explained() {
     assert!(text.contains("0x0684 SET_COMPOSITE_MATRIX[1] to"), "{text}");
 }
 
+/// A scene of nv10 becomes a log of its class, with the lines of a PC emulator.
+#[test]
+fn a_scene_of_nv10_goes_there_and_back() {
+    let bench = Bench::new();
+    let scene = at("vectors/scenes/dot3/lit-stone.ron");
+    let scene = scene.display();
+    bench.run(&format!("export {scene} --to methods -o there")).text();
+    let log = std::fs::read_to_string(bench.path("there/methods.log")).unwrap();
+    assert!(log.lines().all(|line| line.starts_with("execute_command: obj 0x0, class 0x0056, method 0x")), "{log}");
+    let text = bench.run("import there/methods.log --memory there/memory.bin --surfaces-in-memory -o back").text();
+    assert!(text.contains("frame-0000.ron\n") && !text.contains("incomplete"), "{text}");
+    bench.run("render back/frame-0000.ron -o back.png").text();
+    bench.run(&format!("render {scene} -o scene.png")).text();
+    assert!(bench.run("diff back.png scene.png").text().contains("equal"));
+    // Lines that name no class are of the one that the user names.
+    let bare = log.replace("obj 0x0, class 0x0056", "chid 0x0, subc 0x0");
+    bench.write("bare.log", bare);
+    let text = bench.run("import bare.log --class 0x56 --memory there/memory.bin --surfaces-in-memory").text();
+    assert!(!text.contains("no memory") && text.contains("frames 1"), "{text}");
+    let text = bench.run("registers bare.log --profile nv10").text();
+    assert!(text.contains("profile Nv10") && text.contains("RC_IN_RGB[0]"), "{text}");
+}
+
+/// Lines without a draw are told by what they set.
+#[test]
+fn a_log_without_draws_is_explained_by_its_state() {
+    let bench = Bench::new();
+    let state: Vec<&str> = LOG.lines().filter(|line| !line.contains("BEGIN_END")).collect();
+    bench.write("state.log", state.join("\n"));
+    let text = bench.run("import state.log --explain").text();
+    for part in
+        ["no draw: the state that the log leaves", "0x0310 SET_DITHER_ENABLE", "00000001  on", "RC_IN_RGB", "A8R8G8B8"]
+    {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+}
+
+/// The page of an imported frame has each draw's picture, and what is incomplete beside it.
+#[test]
+fn the_inspector_marks_incomplete_draws() {
+    let bench = Bench::new();
+    let vertices = "0x194c 0xff0000ff\n0x1500 0x0\n0x1504 0x0\n0x1508 0x0\n".repeat(3);
+    let whole = LOG.replace("[0] 0x5\n", &format!("[0] 0x5\n{vertices}")).replace("[0] 0x6\n", "[0] 0x4\n");
+    bench.write("whole.log", &whole);
+    bench.run("import whole.log -o frames").text();
+    // Its one triangle lies at one point, of which a warning tells.
+    assert_eq!(bench.run("inspect frames/frame-0000.ron -o page.html").status, 0);
+    let page = std::fs::read_to_string(bench.path("page.html")).unwrap();
+    let marks = page.split("\"steps\":").nth(1).unwrap();
+    let marks = &marks[..marks.len().min(4000)];
+    assert!(marks.contains("SET_COMPOSITE_MATRIX[0] to") && marks.contains("\"picture\":\"iVBOR"), "{marks}");
+}
+
 #[test]
 fn wrong_inputs_are_refused() {
     let bench = Bench::new();
@@ -99,7 +152,10 @@ fn wrong_inputs_are_refused() {
     bench.run("import --memory ram.bin --push-buffer 0x0..0x8 --explain").failed(3, "NB1604");
     bench.run("import --memory ram.bin --push-buffer 0x8..0x4 --explain").failed(2, "two addresses");
     assert!(!bench.path("out").exists());
+    bench.run("import game.log --class 0x44").failed(2, "0x97");
     let scene = at("vectors/scenes/dot3/lit-stone.ron");
+    bench.run(&format!("export {} --to pgraph-c -o out", scene.display())).failed(2, "no GeForce 256");
+    let scene = at("vectors/scenes/fog/corridor-nv10.ron");
     bench.run(&format!("export {} --to methods -o out", scene.display())).failed(3, "NB1610");
     assert!(!bench.path("out").exists());
 }

@@ -439,6 +439,42 @@ fn batches_ask_rows_of_their_table() {
     }
 }
 
+/// Scenes lie beside the tables, with the picture of each reading, by which a card's answer is named.
+#[test]
+fn scenes_are_asked_and_named_by_their_reading() {
+    let asked = Asked::new();
+    let scenes = at("vectors/scenes/deciding").display().to_string();
+    let mut arguments = vec!["export"];
+    UNITS.iter().for_each(|unit| arguments.extend(["--unit", unit]));
+    arguments.extend(["--scenes", &scenes, "-o", "pack"]);
+    let output = asked.run(&arguments);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("TSH-6-dependent          left out: a texture shader"), "{text}");
+    let place = asked.folder.path().join("pack/scenes");
+    let lines = fs::read_to_string(place.join("CMB-9-scale.scene.txt")).unwrap();
+    let raw = fs::read(place.join("CMB-9-scale.scene.raw")).unwrap();
+    let mut draws = 0;
+    for line in lines.lines().filter(|line| line.starts_with("vertices ")) {
+        let [count, first] = [2, 3].map(|n| line.split(' ').nth(n).unwrap().parse::<usize>().unwrap());
+        assert!(count % 3 == 0 && first + 48 * count <= raw.len(), "{line}");
+        draws += 1;
+    }
+    assert!(draws > 2 && lines.contains("scissor "), "{lines}");
+    let answers = asked.results();
+    fs::copy(place.join("CMB-3-expand.png"), answers.join("CMB-3-expand.png")).unwrap();
+    let compared = || {
+        let output = asked.run(&["compare", "pack", "results"]);
+        (output.status.code(), String::from_utf8(output.stdout).unwrap())
+    };
+    let (status, text) = compared();
+    assert!(status == Some(0) && text.contains("CMB-3-expand            as expected\n"), "{text}");
+    assert!(text.contains("CMB-8-dot               not asked"), "{text}");
+    fs::copy(place.join("CMB-8-dot@CMB-8=each.png"), answers.join("CMB-8-dot.png")).unwrap();
+    let (status, text) = compared();
+    assert!(status == Some(1) && text.contains("CMB-8-dot               as CMB-8=each, "), "{text}");
+}
+
 /// Returns the adopted records that contradict the current model, or whose files were changed.
 fn owed(folder: &Path) -> Vec<String> {
     use sha2::{Digest, Sha256};

@@ -3,6 +3,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use ninebit::plan::{Plan, PlanOptions};
+use ninebit_methods::class::{CELSIUS, KELVIN};
 use ninebit_methods::import::{Importer, Options, Sources, import};
 use ninebit_methods::memory::Memory;
 use ninebit_methods::pushbuffer::follow;
@@ -22,7 +23,8 @@ fuzz_target!(|bytes: &[u8]| {
     if !bytes.chunks_exact(4).any(|word| matches!(word[0] & 3, 1 | 2) || word[3] >> 5 == 1) {
         let sources = Sources { memory: memory.clone(), ..Sources::default() };
         let mut importer = Importer::new(State::default(), sources, Options::default(), &mut each);
-        let _ = follow(&memory, 0, (bytes.len() / 4 * 4) as u64, &mut |entry| importer.take(&entry));
+        let class = if bytes.len() % 8 < 4 { KELVIN } else { CELSIUS };
+        let _ = follow(&memory, (0, (bytes.len() / 4 * 4) as u64), class, &mut |entry| importer.take(&entry));
         importer.finish(None);
     }
 });

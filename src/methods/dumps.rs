@@ -5,10 +5,12 @@
 //! PACKET_DRAW_DUMP_Surface_Color.bin, _Depth   the surface from its first row on, as it lies in memory; .txt beside it describes it
 //! PACKET_DRAW_PGRAPH.bin                       the registers after the draw
 //! PACKET_DRAW_RDI_Constants_0.bin              the 192 constants of vertex programs after the draw, each w, z, y, x
+//! PACKET_DRAW_RDI_Shader.bin                   the 136 slots of the vertex program, each from its last word to its first
 //! ```
 //!
-//! DRAW is the number of draws that had ended, DUMP that of surfaces that had been written. Source: the tracer's own file names
-//! (abaire/xbdm_gdb_bridge, Unlicense).
+//! DRAW is the number of draws that had ended, DUMP that of surfaces that had been written. Sources: the tracer's own file names
+//! (abaire/xbdm_gdb_bridge, Unlicense), and for the order of words envytools' hardware tests (MIT), which write the chip's memories through the same
+//! registers and compare what they read back.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -38,6 +40,15 @@ enum Content {
     /// A surface, with the number of surfaces that had been written.
     Surface(Buffer, u64),
     Registers,
+    Ram(Ram),
+}
+
+/// A memory of the transform unit, whose entries are four words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ram {
+    /// Slots of vertex programs.
+    Program,
+    /// Their constants.
     Constants,
 }
 
@@ -51,7 +62,8 @@ impl Dump {
             [dump, "Surface", "Color"] => Content::Surface(Buffer::Color, dump.parse().ok()?),
             [dump, "Surface", "Depth"] => Content::Surface(Buffer::Depth, dump.parse().ok()?),
             ["PGRAPH"] => Content::Registers,
-            ["RDI", "Constants", "0"] => Content::Constants,
+            ["RDI", "Shader"] => Content::Ram(Ram::Program),
+            ["RDI", "Constants", "0"] => Content::Ram(Ram::Constants),
             _ => return None,
         };
         Some(Dump { draw: parts.get(1)?.parse().ok()?, content })
@@ -77,9 +89,9 @@ pub struct Dumps {
     textures: BTreeMap<u64, Vec<(usize, u32, String)>>,
     /// Names of surfaces by draw and dump, which grow together, for each [`Buffer`].
     surfaces: [BTreeMap<(u64, u64), String>; 2],
-    /// Names of registers and of constants by draw.
+    /// Names of registers by draw, and those of each [`Ram`].
     registers: BTreeMap<u64, String>,
-    constants: BTreeMap<u64, String>,
+    rams: [BTreeMap<u64, String>; 2],
 }
 
 impl Dumps {
@@ -102,8 +114,8 @@ impl Dumps {
                 Some(Dump { draw, content: Content::Registers }) => {
                     dumps.registers.insert(draw, name.to_owned());
                 }
-                Some(Dump { draw, content: Content::Constants }) => {
-                    dumps.constants.insert(draw, name.to_owned());
+                Some(Dump { draw, content: Content::Ram(ram) }) => {
+                    dumps.rams[ram as usize].insert(draw, name.to_owned());
                 }
                 None => {}
             }
@@ -126,11 +138,11 @@ impl Dumps {
         self.read(self.registers.get(&draw)?).ok()
     }
 
-    /// Returns the constants of vertex programs after a draw, x to w.
-    pub fn constants(&self, draw: u64) -> Option<Vec<[u32; 4]>> {
-        let bytes = self.read(self.constants.get(&draw)?).ok()?;
-        let vector = |bytes: &[[u8; 4]; 4]| [3, 2, 1, 0].map(|n: usize| u32::from_le_bytes(bytes[n]));
-        Some(bytes.as_chunks::<4>().0.as_chunks::<4>().0.iter().map(vector).collect())
+    /// Returns the entries of a memory after a draw, each as methods send its words.
+    pub fn ram(&self, draw: u64, ram: Ram) -> Option<Vec<[u32; 4]>> {
+        let bytes = self.read(self.rams[ram as usize].get(&draw)?).ok()?;
+        let entry = |bytes: &[[u8; 4]; 4]| [3, 2, 1, 0].map(|n: usize| u32::from_le_bytes(bytes[n]));
+        Some(bytes.as_chunks::<4>().0.as_chunks::<4>().0.iter().map(entry).collect())
     }
 
     /// Returns what a buffer of the bound surface held after a draw.
@@ -180,7 +192,8 @@ mod tests {
         assert_eq!(name("0000000211_3_8_Surface_Color.bin"), Some((3, Content::Surface(Buffer::Color, 8))));
         assert_eq!(name("0000000211_3_8_Surface_Depth.bin"), Some((3, Content::Surface(Buffer::Depth, 8))));
         assert_eq!(name("0000000211_3_PGRAPH.bin"), Some((3, Content::Registers)));
-        assert_eq!(name("0000000211_4_RDI_Constants_0.bin"), Some((4, Content::Constants)));
+        assert_eq!(name("0000000211_4_RDI_Constants_0.bin"), Some((4, Content::Ram(Ram::Constants))));
+        assert_eq!(name("0000000211_4_RDI_Shader.bin"), Some((4, Content::Ram(Ram::Program))));
         for other in [
             "0000000211_3_PFB.bin",
             "0000000211_3_8_Surface_Color.txt",

@@ -7,12 +7,12 @@ use ninebit::plan::{Plan, PlanError, PlanOptions};
 use ninebit::raster::depth;
 use ninebit::rop;
 use ninebit::state::{
-    Buffer, DepthBuffer, Draw, Named, Palette, Profile, Rectangle, Scene, ShaderOperation, TEXTURE_UNITS, Target,
+    Buffer, DepthBuffer, Draw, Named, Palette, Rectangle, Scene, ShaderOperation, SurfaceFormat, TEXTURE_UNITS, Target,
     Texture, TextureFormat, TextureImage, TextureKind, TextureUnit, VertexDepths,
 };
 use ninebit_scene::clear::Clear;
 
-use crate::class;
+use crate::class::{self, Family};
 use crate::draw::surface::{Surface, surface};
 use crate::draw::texture::{Image, entries, image, palette, unit};
 use crate::draw::view::View;
@@ -104,6 +104,8 @@ impl TargetUse {
 #[derive(Debug, Default)]
 pub(crate) struct Builder {
     number: u64,
+    /// The family of the class that draws.
+    family: Family,
     surfaces_in_memory: bool,
     targets: Vec<Target>,
     known: Vec<TargetUse>,
@@ -230,6 +232,7 @@ impl Builder {
     /// Takes a draw.
     pub(crate) fn draw(&mut self, state: &State, sources: &Sources, batch: &Batch, number: u64) {
         let mut view = View::new(state);
+        self.family = state.family();
         let line = batch.line;
         let draw = self.lower(&mut view, sources, batch, number);
         let count = draw.as_ref().map_or(0, |draw| draw.indices.len());
@@ -259,7 +262,7 @@ impl Builder {
     fn lower(&mut self, view: &mut View<'_>, sources: &Sources, batch: &Batch, number: u64) -> Option<Draw> {
         let memory = &sources.memory;
         let Some(topology) = raster::topology(batch.primitive) else {
-            view.note(Gap::BadValue(class::SET_BEGIN_END, batch.primitive));
+            view.note(Gap::BadValue(Family::Kelvin, class::SET_BEGIN_END, batch.primitive));
             return None;
         };
         let surface = surface(view)?;
@@ -332,8 +335,7 @@ impl Builder {
         for index in 0..TEXTURE_UNITS {
             let mut stage = shader::stage(view, index);
             if stage.operation.samples() {
-                let enabled =
-                    view.get(crate::draw::texture::of_unit(class::SET_TEXTURE_CONTROL0, index)) >> 30 & 1 != 0;
+                let enabled = view.get(class::of_unit(class::SET_TEXTURE_CONTROL0, index)) >> 30 & 1 != 0;
                 draw.textures[index] = if enabled { self.unit(view, memory, index, draw.target) } else { None };
                 if draw.textures[index].is_none() {
                     stage.operation = ShaderOperation::None;
@@ -352,11 +354,11 @@ impl Builder {
 
     fn unit(&mut self, view: &mut View<'_>, memory: &Memory, index: usize, target: usize) -> Option<TextureUnit> {
         let image = image(view, index)?;
-        let projects = shader::code(view, index) == shader::THREE;
+        let projects = shader::code(view, index) == class::STAGE_THREE;
         let mut state = unit(view, index, &image, projects);
         state.texture = match self.shown(view, &image, target) {
             Some(texture) => texture,
-            None => self.texture(view, memory, &image),
+            None => self.texture(view, memory, &image)?,
         };
         if image.format == TextureFormat::P8 {
             let place = palette(view, index);
@@ -420,11 +422,11 @@ impl Builder {
         Some(self.textures.len() - 1)
     }
 
-    /// Returns the texture of an image. Where memory does not hold it, a white texel stands for it.
-    fn texture(&mut self, view: &mut View<'_>, memory: &Memory, image: &Image) -> usize {
+    /// Returns the texture of an image. Where memory does not hold it, a white texel stands for it; what the chip does not have is noted.
+    fn texture(&mut self, view: &mut View<'_>, memory: &Memory, image: &Image) -> Option<usize> {
         if let Some((texture, gap)) = self.images.get(image) {
             gap.iter().for_each(|gap| view.note(gap.clone()));
-            return *texture;
+            return Some(*texture);
         }
         let (texels, gap) = match image.texels(memory) {
             Ok(texels) => (texels, None),
@@ -432,15 +434,16 @@ impl Builder {
         };
         let name = format!("texture {} at {:08x}", self.textures.len(), image.address);
         let name = if gap.is_some() { format!("{name}, not recorded") } else { name };
-        self.textures.push(Texture {
-            name,
-            kind: image.kind,
-            format: image.format,
-            image: TextureImage::Texels(texels),
-        });
+        let image_of = TextureImage::Texels(texels);
+        let texture = Texture { name, kind: image.kind, format: image.format, image: image_of };
+        if let Some(message) = refusal(view.family(), &texture) {
+            view.note(Gap::NotModelled(message));
+            return None;
+        }
+        self.textures.push(texture);
         gap.iter().for_each(|gap| view.note(gap.clone()));
         self.images.insert(*image, (self.textures.len() - 1, gap));
-        self.textures.len() - 1
+        Some(self.textures.len() - 1)
     }
 
     /// Forgets the images in a range of addresses, which hold others from now on.
@@ -477,8 +480,8 @@ impl Builder {
             target.contents = colors.map(Into::into).or(target.contents.take());
             target.depth_contents = depths.map(Into::into).or(target.depth_contents.take());
         }
-        let Builder { number, targets, textures, palettes, draws, mut drawn, .. } = self;
-        let mut scene = Scene { profile: Profile::Nv2a, targets, textures, palettes, draws };
+        let Builder { number, family, targets, textures, palettes, draws, mut drawn, .. } = self;
+        let mut scene = Scene { profile: family.profile(), targets, textures, palettes, draws };
         for draw in &mut scene.draws {
             // Until here a target may have grown by the clip of a later draw.
             let target = &scene.targets[draw.target];
@@ -494,6 +497,17 @@ impl Builder {
         }
         Frame { number, scene, drawn, held }
     }
+}
+
+/// Returns why a chip does not have a texture. Kelvin's formats are all the model's.
+fn refusal(family: Family, texture: &Texture) -> Option<String> {
+    if family == Family::Kelvin {
+        return None;
+    }
+    let targets = vec![Target::new(1, 1, SurfaceFormat::A8R8G8B8)];
+    let scene = Scene { profile: family.profile(), targets, textures: vec![texture.clone()], ..Scene::default() };
+    let errors = Plan::compile(&scene, &PlanOptions::default()).err()?;
+    errors.into_iter().next().map(|error| error.message)
 }
 
 /// Removes the draws that errors name, and notes the errors. Returns whether there are any.

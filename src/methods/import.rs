@@ -5,9 +5,8 @@ use std::collections::BTreeMap;
 use ninebit::state::Profile;
 use ninebit_program::registers::Word as RegisterWord;
 
-use crate::class::{self, KELVIN, Treatment};
-use crate::draw::texture::of_unit;
-use crate::dumps::{Dumps, TextureDump};
+use crate::class::{self, CELSIUS, Family, KELVIN, Treatment, of_unit};
+use crate::dumps::{Dumps, Ram, TextureDump};
 use crate::frame::{Builder, Frame};
 use crate::log::{Entry, Event, Fault, Reader, Write};
 use crate::memory::Memory;
@@ -85,19 +84,17 @@ const FAULTS: usize = 16;
 
 impl Summary {
     fn count(&mut self, line: u64, class: u32, method: u32, words: u64) {
-        let number = match class {
-            KELVIN => class::find(method).map_or(method, |place| place.method.number),
-            _ => method,
-        };
+        let place = Family::of(class).and_then(|family| family.find(method));
+        let number = place.map_or(method, |place| place.method.number);
         self.methods.entry((class, number)).or_insert(Use { count: 0, line }).count += words;
     }
 
-    /// Returns the number of words of a class, or of its methods of a treatment.
+    /// Returns the number of words of 3D classes, or of their methods of a treatment.
     pub fn words(&self, treatment: Option<Treatment>) -> u64 {
-        let of_class = self.methods.iter().filter(|((class, _), _)| *class == KELVIN);
-        let treated = of_class.filter(|((_, method), _)| {
-            treatment.is_none_or(|treatment| {
-                class::find(*method).map_or(Treatment::Open, |place| place.method.treatment) == treatment
+        let treated = self.methods.iter().filter(|((class, method), _)| {
+            Family::of(*class).is_some_and(|family| {
+                let found = family.find(*method).map_or(Treatment::Open, |place| place.method.treatment);
+                treatment.is_none_or(|treatment| treatment == found)
             })
         });
         treated.map(|(_, used)| used.count).sum()
@@ -186,7 +183,9 @@ impl<'a> Importer<'a> {
     fn take_dumps(&mut self) {
         let dumps = &self.sources.dumps;
         let registers = dumps.registers(self.draw).map(|dump| pgraph::methods(&dump)).unwrap_or_default();
-        self.state.complete(&registers, &dumps.constants(self.draw).unwrap_or_default());
+        let [program, constants] =
+            [Ram::Program, Ram::Constants].map(|ram| dumps.ram(self.draw, ram).unwrap_or_default());
+        self.state.complete(&registers, &program, &constants);
         for TextureDump { unit, layer, bytes } in self.sources.dumps.textures(self.draw) {
             let Some(address) = self.state.get(of_unit(class::SET_TEXTURE_OFFSET, unit)) else { continue };
             let count = bytes.len() as u64;
@@ -257,13 +256,15 @@ pub fn import(text: &[u8], state: State, memory: &Memory, options: Options) -> (
     (frames, summary)
 }
 
-/// Returns the words of the combiners that a log leaves set, a method and its word a line; `None` if the bytes are no log. Register words alone are
-/// none: they have a reader of their own.
-pub fn combiner_words(bytes: &[u8]) -> Option<String> {
-    let (mut reader, mut words) = (Reader::new(), BTreeMap::new());
+/// Returns the words of a chip's combiners that a log leaves set, a method and its word a line; `None` if the bytes are no log. Register words
+/// alone are none: they have a reader of their own.
+pub fn combiner_words(bytes: &[u8], chip: Profile) -> Option<String> {
+    let class = if chip == Profile::Nv10 { CELSIUS } else { KELVIN };
+    let (mut reader, mut words) = (Reader::of_class(class), BTreeMap::new());
     let mut take = |entry: Entry| {
-        if let Event::Write(Write { class: KELVIN, method, word }) = entry.event
-            && RegisterWord::of_method(method, Profile::Nv2a).is_some()
+        if let Event::Write(Write { class, method, word }) = entry.event
+            && Family::of(class).is_some_and(|family| family.profile() == chip)
+            && RegisterWord::of_method(method, chip).is_some()
         {
             words.insert(method, word);
         }
@@ -284,28 +285,30 @@ pub struct AssumptionError {
 }
 
 /// Reads state that the user or another log states, and sets it: lines of any form of a log, or a method's name with its word,
-/// `SET_COLOR_MASK 0x01010101`, `SET_COMBINER_COLOR_ICW[1] = 0x04200000`. What draws is left out. Returns the methods that were set.
+/// `SET_COLOR_MASK 0x01010101`, `SET_COMBINER_COLOR_ICW[1] = 0x04200000`. What draws is left out. Lines without a class are of `class`. Returns the
+/// methods that were set.
 ///
 /// # Errors
 /// The first line that is neither.
-pub fn assume(state: &mut State, text: &str) -> Result<Vec<u32>, AssumptionError> {
+pub fn assume(state: &mut State, class: u32, text: &str) -> Result<Vec<u32>, AssumptionError> {
     let mut methods = Vec::new();
     for (number, line) in text.lines().enumerate() {
-        let mut reader = Reader::new();
+        let mut reader = Reader::of_class(class);
         let mut writes = Vec::new();
         let mut take = |entry: Entry| {
-            if let Event::Write(Write { class: KELVIN, method, word }) = entry.event {
-                writes.push((method, word));
+            if let Event::Write(write) = entry.event {
+                writes.push(write);
             }
         };
         reader.feed(line.as_bytes(), &mut take);
         reader.finish(&mut take);
         if reader.unknown > 0 {
-            let named = named(line).ok_or_else(|| AssumptionError { line: number + 1, text: line.to_owned() })?;
-            writes = vec![named];
+            let named = named(line, Family::of(class).unwrap_or_default());
+            let (method, word) = named.ok_or_else(|| AssumptionError { line: number + 1, text: line.to_owned() })?;
+            writes = vec![Write { class, method, word }];
         }
-        for (method, word) in writes {
-            state.assume(method, word);
+        for Write { class, method, word } in writes {
+            state.assume(class, method, word);
             methods.push(method);
         }
     }
@@ -313,12 +316,13 @@ pub fn assume(state: &mut State, text: &str) -> Result<Vec<u32>, AssumptionError
 }
 
 /// Reads a method's name, an index in brackets or none, and a word.
-fn named(line: &str) -> Option<(u32, u32)> {
+fn named(line: &str, family: Family) -> Option<(u32, u32)> {
     let line = line.trim();
     let end = line.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).unwrap_or(line.len());
     let (name, rest) = line.split_at(end);
-    let name = name.strip_prefix("NV097_").unwrap_or(name).to_ascii_uppercase();
-    let method = class::methods().iter().find(|method| method.name == name)?;
+    let prefixes = ["NV097_", "NV10_3D_"];
+    let name = prefixes.iter().find_map(|prefix| name.strip_prefix(prefix)).unwrap_or(name).to_ascii_uppercase();
+    let method = family.methods().iter().find(|method| method.name == name)?;
     let (mut number, mut rest) = (method.number, rest.trim_start());
     let strides = if method.count == 1 { [4, 4] } else { [method.stride, 4] };
     for stride in strides {
@@ -326,7 +330,7 @@ fn named(line: &str) -> Option<(u32, u32)> {
         number = number.checked_add(index.trim().parse::<u32>().ok()?.checked_mul(stride)?)?;
         rest = after.trim_start();
     }
-    let found = class::find(number)?;
+    let found = family.find(number)?;
     let word = rest.trim_start_matches([':', '=', ' ']).trim().trim_end_matches(';');
     let word = match word.strip_prefix("0x") {
         Some(digits) => u32::from_str_radix(digits, 16).ok()?,
@@ -345,14 +349,14 @@ mod tests {
         let text = "# what the driver sets first\nNV097_SET_COLOR_MASK 0x01010101\nset_combiner_color_icw[1] = 0x04200000\n\
                     0x0304 0x1\nSET_COMPOSITE_MATRIX[5]: 0.5\nSET_TEXTURE_SET_BUMP_ENV_MAT[1][2] 1.0\n\
                     nv2a_pgraph_method 0: 0x97 -> 0x1d94 NV097_CLEAR_SURFACE[0] 0xf3";
-        assert!(assume(&mut state, text).is_ok());
+        assert!(assume(&mut state, KELVIN, text).is_ok());
         assert_eq!(state.get(class::SET_COLOR_MASK), Some(0x0101_0101));
         assert_eq!(state.get(0xac4), Some(0x0420_0000));
         assert_eq!((state.get(0x304), state.get(0x694)), (Some(1), Some(0.5_f32.to_bits())));
         assert_eq!(state.get(class::SET_TEXTURE_SET_BUMP_ENV_MAT + 64 + 8), Some(1.0_f32.to_bits()));
-        let wrong = assume(&mut state, "\nSET_NOTHING 1").unwrap_err();
+        let wrong = assume(&mut state, KELVIN, "\nSET_NOTHING 1").unwrap_err();
         assert_eq!((wrong.line, wrong.text.as_str()), (2, "SET_NOTHING 1"));
-        assert!(assume(&mut state, "SET_COLOR_MASK[4] 1").is_err());
+        assert!(assume(&mut state, KELVIN, "SET_COLOR_MASK[4] 1").is_err());
     }
 
     fn frames(text: &str, part: Part) -> (Vec<Frame>, Summary) {
@@ -364,9 +368,9 @@ mod tests {
         let log = "nv2a_pgraph_method 0: 0x97 -> 0x0ac0 NV097_SET_COMBINER_COLOR_ICW[0] 0x1\n\
                    nv2a_pgraph_method 0: 0x97 -> NV097_SET_COMBINER_COLOR_ICW[0]<0xac0> (0x2 {[A: Zero]} <0x2>)\n\
                    nv2a_pgraph_method 0: 0x97 -> 0x0304 NV097_SET_BLEND_ENABLE[0] 0x1\n";
-        assert_eq!(combiner_words(log.as_bytes()).as_deref(), Some("0x0ac0 0x00000002\n"));
-        assert_eq!(combiner_words(b"0x0ac0 0x00000002\n"), None);
-        assert_eq!(combiner_words(b"RC_IN_RGB 0x00000002\n"), None);
+        assert_eq!(combiner_words(log.as_bytes(), Profile::Nv2a).as_deref(), Some("0x0ac0 0x00000002\n"));
+        assert_eq!(combiner_words(b"0x0ac0 0x00000002\n", Profile::Nv2a), None);
+        assert_eq!(combiner_words(b"RC_IN_RGB 0x00000002\n", Profile::Nv2a), None);
     }
 
     #[test]

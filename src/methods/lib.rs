@@ -1,8 +1,10 @@
-//! Methods of the chip's 3D class: logs of real programs become scenes, and scenes become methods.
+//! Methods of the chips' 3D classes: logs of real programs become scenes, and scenes become methods.
 
+mod celsius;
 pub mod class;
 mod draw;
 pub mod dumps;
+pub mod explain;
 pub mod export;
 pub mod frame;
 pub mod gap;

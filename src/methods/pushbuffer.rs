@@ -20,13 +20,13 @@ pub enum Stop {
     Calls(u64),
 }
 
-/// Passes the words from address `first` on until `end`. Jumps and calls are followed. The places of entries are addresses.
+/// Passes the words for a class from address `first` on until `end`. Jumps and calls are followed. The places of entries are addresses.
 ///
 /// # Errors
 /// The words lead out of the memory, or do not end.
-pub fn follow(memory: &Memory, first: u64, end: u64, each: &mut dyn FnMut(Entry)) -> Result<(), Stop> {
+pub fn follow(memory: &Memory, (first, end): (u64, u64), class: u32, each: &mut dyn FnMut(Entry)) -> Result<(), Stop> {
     let (mut at, mut calls) = (first, Vec::new());
-    let mut words = Words::default();
+    let mut words = Words::of_class(class);
     for _ in 0..MOST_WORDS {
         if at == end {
             if let Some(fault) = words.finish() {
@@ -72,7 +72,7 @@ mod tests {
     fn read(words: &[u32], first: u64, end: u64) -> (Vec<Event>, Result<(), Stop>) {
         let memory = Memory::new(words.iter().flat_map(|word| word.to_le_bytes()).collect());
         let mut events = Vec::new();
-        let result = follow(&memory, first, end, &mut |entry| events.push(entry.event));
+        let result = follow(&memory, (first, end), KELVIN, &mut |entry| events.push(entry.event));
         (events, result)
     }
 

@@ -1,11 +1,12 @@
-//! The state of the 3D class, followed through a log.
+//! The state of the 3D class, followed through a log. The first class of the log that is one decides which family it is of.
 //!
 //! A word that the log never set is not known: [`State::get`] says so, and nothing else stands in its place but what the user assumes.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::mem;
 
-use crate::class::{self, METHOD_BYTES, Treatment};
+use crate::celsius::{self, Known};
+use crate::class::{self, Family, METHOD_BYTES, Treatment};
 use crate::log::{Event, Write};
 use crate::vertex::formats::normalized;
 use crate::vertex::microcode::{CONSTANTS, SLOTS};
@@ -82,6 +83,8 @@ pub struct Batch {
     pub edge_flags: Vec<bool>,
     /// Words that the log does not have, by method.
     pub dropped: BTreeMap<u32, u64>,
+    /// Methods within the draw that are not modelled.
+    pub open: BTreeSet<u32>,
     /// Whether it has more than [`LONGEST_DRAW`] of anything; the rest is left out.
     pub cut: bool,
 }
@@ -100,6 +103,8 @@ pub enum Action {
 /// The state of the class.
 #[derive(Clone, Debug)]
 pub struct State {
+    /// The family of the class; `None` before the first word.
+    family: Option<Family>,
     words: Words,
     program: Upload,
     constants: Upload,
@@ -112,6 +117,7 @@ pub struct State {
 impl Default for State {
     fn default() -> State {
         State {
+            family: None,
             words: Words::new((METHOD_BYTES / 4) as usize),
             program: Upload::new(SLOTS),
             constants: Upload::new(CONSTANTS),
@@ -123,9 +129,28 @@ impl Default for State {
 }
 
 impl State {
-    /// Returns a word of state that the log or the user set.
+    /// Returns the family of the class, which is Kelvin's before the first word.
+    pub fn family(&self) -> Family {
+        self.family.unwrap_or_default()
+    }
+
+    /// Returns a word of state that the log or the user set, by the class's own number.
     pub fn get(&self, method: u32) -> Option<u32> {
         self.words.get(method as usize / 4)
+    }
+
+    /// Returns what is known of a state, by Kelvin's number.
+    pub(crate) fn known(&self, kelvin: u32) -> Known {
+        match self.family() {
+            Family::Kelvin => self.get(kelvin).map_or(Known::Unset(kelvin), Known::Word),
+            Family::Celsius => celsius::known(kelvin, |number| self.get(number)),
+        }
+    }
+
+    /// Takes the family of a class; returns whether the class is of the log's family.
+    fn is_of(&mut self, class: u32) -> bool {
+        let family = Family::of(class);
+        family.is_some() && *self.family.get_or_insert(family.unwrap_or_default()) == family.unwrap_or_default()
     }
 
     /// Returns a word of the vertex program.
@@ -149,9 +174,12 @@ impl State {
         self.batch.is_some()
     }
 
-    /// Sets a word as if the log had it, without what it would do.
-    pub fn assume(&mut self, method: u32, word: u32) {
-        match class::find(method).map(|place| place.method.treatment) {
+    /// Sets a word of a class as if the log had it, without what it would do.
+    pub fn assume(&mut self, class: u32, method: u32, word: u32) {
+        if !self.is_of(class) {
+            return;
+        }
+        match self.family().find(method).map(|place| place.method.treatment) {
             Some(Treatment::Draw | Treatment::Flip) => {}
             _ => {
                 let _ = self.write(0, method, word);
@@ -159,16 +187,18 @@ impl State {
         }
     }
 
-    /// Sets what is not known yet: words of methods, and constants of the vertex program.
-    pub fn complete(&mut self, words: &BTreeMap<u32, u32>, constants: &[[u32; 4]]) {
+    /// Sets what is not known yet: words of Kelvin's methods, and the vertex program with its constants.
+    pub fn complete(&mut self, words: &BTreeMap<u32, u32>, program: &[[u32; 4]], constants: &[[u32; 4]]) {
         for (method, word) in words {
             if self.get(*method).is_none() {
                 self.words.set(*method as usize / 4, *word);
             }
         }
-        for (at, word) in constants.iter().take(CONSTANTS).flatten().enumerate() {
-            if self.constants.words.get(at).is_none() {
-                self.constants.words.set(at, *word);
+        for (upload, dumped) in [(&mut self.program, program), (&mut self.constants, constants)] {
+            for (at, word) in dumped.iter().flatten().enumerate() {
+                if upload.words.get(at).is_none() {
+                    upload.words.set(at, *word);
+                }
             }
         }
     }
@@ -176,8 +206,8 @@ impl State {
     /// Follows an event of a log. Events of other classes change nothing.
     pub fn follow(&mut self, line: u64, event: &Event) -> Option<Action> {
         match *event {
-            Event::Write(Write { class: class::KELVIN, method, word }) => self.write(line, method, word),
-            Event::Dropped { class: class::KELVIN, method, count } => {
+            Event::Write(Write { class, method, word }) if self.is_of(class) => self.write(line, method, word),
+            Event::Dropped { class, method, count } if self.is_of(class) => {
                 if let Some(batch) = &mut self.batch {
                     *batch.dropped.entry(method).or_default() += count.unwrap_or(1);
                 } else if let Some(known) = self.words.known.get_mut(method as usize / 4) {
@@ -192,16 +222,26 @@ impl State {
     }
 
     fn write(&mut self, line: u64, method: u32, word: u32) -> Option<Action> {
-        let place = class::find(method);
-        match place.map(|place| place.method.treatment) {
-            Some(Treatment::Draw) => return self.draw(line, method, word),
-            Some(Treatment::Flip) => return Some(Action::Flip),
-            Some(Treatment::Program) => self.program.take(method, word),
-            Some(Treatment::Constant) => self.constants.take(method, word),
-            Some(Treatment::Vertex) => self.vertex(method, word),
+        let family = self.family();
+        let place = family.find(method);
+        let kelvin = place.and_then(|place| family.kelvin(&place));
+        match (place.map(|place| place.method.treatment), kelvin) {
+            (Some(Treatment::Draw), Some(kelvin)) => return self.draw(line, kelvin, word),
+            (Some(Treatment::Flip), _) => return Some(Action::Flip),
+            (Some(Treatment::Program), _) => self.program.take(method, word),
+            (Some(Treatment::Constant), _) => self.constants.take(method, word),
+            (Some(Treatment::Vertex), Some(kelvin)) => self.vertex(kelvin, word),
+            (Some(Treatment::Open), _) => {
+                if let Some(batch) = &mut self.batch {
+                    batch.open.insert(method);
+                }
+            }
             _ => {}
         }
         self.words.set(method as usize / 4, word);
+        if family != Family::Kelvin {
+            return None;
+        }
         match method {
             class::SET_TRANSFORM_PROGRAM_LOAD => self.program.next = Some(word),
             class::SET_TRANSFORM_CONSTANT_LOAD => self.constants.next = Some(word),
@@ -215,7 +255,9 @@ impl State {
         None
     }
 
+    /// Takes a word of a draw, by Kelvin's number.
     fn draw(&mut self, line: u64, method: u32, word: u32) -> Option<Action> {
+        let most = if self.family() == Family::Kelvin { 0xff_ffff } else { 0xffff };
         match method {
             class::CLEAR_SURFACE => return Some(Action::Clear(word)),
             class::SET_BEGIN_END => {
@@ -236,7 +278,7 @@ impl State {
             class::ARRAY_ELEMENT16 => put(&mut batch.indices, &mut [word & 0xffff, word >> 16].into_iter()),
             class::ARRAY_ELEMENT32 => put(&mut batch.indices, &mut [word].into_iter()),
             class::DRAW_ARRAYS => {
-                let (first, count) = (word & 0xff_ffff, (word >> 24) + 1);
+                let (first, count) = (word & most, (word >> 24) + 1);
                 put(&mut batch.indices, &mut (first..first + count))
             }
             _ => put(&mut batch.inline, &mut [word].into_iter()),
@@ -244,19 +286,20 @@ impl State {
         None
     }
 
-    /// Takes a word of an attribute. The last word of the position makes a vertex.
+    /// Takes a word of an attribute, by Kelvin's number. The last word of the position makes a vertex.
     fn vertex(&mut self, method: u32, word: u32) {
         let Some((attribute, kind, at, last)) = attribute(method) else { return };
         let value = &mut self.attributes[attribute];
         kind.put(value, at, word);
         self.known_attributes |= 1 << attribute;
+        let flag = self.known(class::SET_EDGE_FLAG);
         if attribute == 0
             && last
             && let Some(batch) = &mut self.batch
         {
             if batch.immediate.len() < LONGEST_DRAW / 4 {
                 batch.immediate.push(self.attributes);
-                batch.edge_flags.push(self.words.get(class::SET_EDGE_FLAG as usize / 4) != Some(0));
+                batch.edge_flags.push(flag != Known::Word(0));
             } else {
                 batch.cut = true;
             }
@@ -310,7 +353,7 @@ impl Kind {
 
 /// Returns the attribute that a method sets, how, the index of the word, and whether it is the last one.
 fn attribute(method: u32) -> Option<(usize, Kind, usize, bool)> {
-    let place = class::find(method)?;
+    let place = Family::Kelvin.find(method)?;
     let (at, last) = (place.word as usize, place.word + 1 == place.method.words);
     let element = place.element as usize;
     let (attribute, kind) = match place.method.number {
@@ -369,7 +412,7 @@ mod tests {
     #[test]
     fn every_attribute_has_a_method() {
         let vertex = |method: &&class::Method| method.treatment == Treatment::Vertex;
-        for method in class::methods().iter().filter(vertex) {
+        for method in Family::Kelvin.methods().iter().filter(vertex) {
             assert!(attribute(method.number).is_some(), "{}", method.name);
         }
     }

@@ -1,7 +1,8 @@
-//! The command `ninebit export`: scenes become methods of the Xbox's 3D class.
+//! The command `ninebit export`: scenes become methods of the chip's 3D class.
 
 use super::*;
 
+use ninebit::state::Profile;
 use ninebit_files::output::write_below;
 use ninebit_files::pending::PendingFolder;
 use ninebit_methods::export::{Methods, console_program, export, push_buffer, trace};
@@ -10,7 +11,7 @@ use ninebit_methods::export::{Methods, console_program, export, push_buffer, tra
 pub(crate) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// What is written: lines as xemu traces methods, words of a push buffer, or a program for a console
+    /// What is written: lines as emulators trace methods, words of a push buffer, or a program for a console
     #[arg(long, value_enum, value_name = "FORM")]
     to: Form,
     /// The folder that is made
@@ -21,7 +22,7 @@ pub(crate) struct Arguments {
 /// A form of methods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Form {
-    /// `methods.log`, lines that `ninebit import` and tools for xemu's traces read
+    /// `methods.log`, lines that `ninebit import` reads: of nv2a as xemu traces them, of nv10 as Bochs
     Methods,
     /// `pushbuffer.bin`, little-endian words
     Pushbuffer,
@@ -43,6 +44,9 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         Form::Methods => ("methods.log".to_owned(), trace(&methods).into_bytes()),
         Form::Pushbuffer => {
             ("pushbuffer.bin".to_owned(), push_buffer(&methods).iter().flat_map(|word| word.to_le_bytes()).collect())
+        }
+        Form::PgraphC if scene.profile == Profile::Nv10 => {
+            return Err(Failure::usage("a console has no GeForce 256", "set `profile: Nv2a` in the scene"));
         }
         Form::PgraphC => {
             let Some(target) = scene.targets.first() else {

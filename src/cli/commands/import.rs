@@ -8,13 +8,14 @@ use super::*;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use ninebit::limits::{LOG, MEMORY_IMAGE};
+use ninebit::limits::{LOG, Limits, MEMORY_IMAGE};
 use ninebit::plan::PlanOptions;
 use ninebit_files::output::write_below;
 use ninebit_files::pending::PendingFolder;
 use ninebit_files::read::{self, Kind, ReadError};
-use ninebit_methods::class::{self, KELVIN, Treatment};
+use ninebit_methods::class::{self, Family, KELVIN, Treatment};
 use ninebit_methods::dumps::{Dumps, LOG_FILE};
+use ninebit_methods::explain::{combiners, register_words, settings};
 use ninebit_methods::frame::Frame;
 use ninebit_methods::import::{Importer, Options, Part, Sources, Summary, assume};
 use ninebit_methods::log::{Fault, Reader};
@@ -23,7 +24,9 @@ use ninebit_methods::pgraph;
 use ninebit_methods::pushbuffer::{self, Stop};
 use ninebit_methods::state::State;
 use ninebit_report::explain::{explain, explanation_text};
+use ninebit_scene::assets::Bundle;
 use ninebit_scene::write::{self, WriteOptions};
+use ninebit_scene::{ProgramLanguage, load_program_with};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -46,6 +49,9 @@ pub(crate) struct Arguments {
     /// Words of a push buffer in the memory, from one address to another, in place of a log
     #[arg(long, value_name = "FIRST..END", requires = "memory", conflicts_with = "log", value_parser = addresses)]
     push_buffer: Option<(u64, u64)>,
+    /// The 3D class of words, names and lines that say none: `0x97` (NV2A, NV20), `0x56` (NV10), ...
+    #[arg(long, value_name = "CLASS", default_value = "0x97", value_parser = class_number)]
+    class: u32,
     /// A scene of each draw, in place of each frame. With the dumps of a hardware tracer each begins as the chip's surface was
     #[arg(long, conflicts_with_all = ["frame", "draw"])]
     each_draw: bool,
@@ -79,6 +85,14 @@ fn addresses(text: &str) -> Result<(u64, u64), String> {
     }
 }
 
+fn class_number(text: &str) -> Result<u32, String> {
+    let number = u32::from_str_radix(text.trim_start_matches("0x"), 16).ok();
+    number.filter(|class| Family::of(*class).is_some()).ok_or_else(|| {
+        let known = class::CLASSES.iter().map(|(class, _)| format!("0x{class:x}")).collect::<Vec<_>>();
+        format!("a class that is followed is needed: {}", known.join(", "))
+    })
+}
+
 /// Imports a log.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let (log, dumps) = match &arguments.log {
@@ -98,10 +112,10 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     for path in [&arguments.state, &arguments.assume].into_iter().flatten() {
         let bytes = read::bytes(path, Kind::Stream, LOG).map_err(|error| unreadable(path, error))?;
         if bytes.len() == pgraph::DUMP_BYTES && bytes.contains(&0) {
-            pgraph::methods(&bytes).into_iter().for_each(|(method, word)| state.assume(method, word));
+            pgraph::methods(&bytes).into_iter().for_each(|(method, word)| state.assume(KELVIN, method, word));
             continue;
         }
-        assume(&mut state, &String::from_utf8_lossy(&bytes)).map_err(|error| {
+        assume(&mut state, arguments.class, &String::from_utf8_lossy(&bytes)).map_err(|error| {
             let message =
                 format!("`{}`, line {}: `{}` sets no state", shown::path(path), error.line, shown::name(&error.text));
             Failure::invalid(
@@ -129,8 +143,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     };
     let mut each = |frame: Frame| out.take(&frame);
     let sources = Sources { memory, dumps };
-    let summary = follow((arguments, log.as_deref()), state, sources, options, &mut each)?;
-    let Out { explanation, failure, written, compared, .. } = out;
+    let (summary, left) = follow((arguments, log.as_deref()), state, sources, options, &mut each)?;
+    let Out { mut explanation, failure, written, compared, .. } = out;
     if let Some(failure) = failure {
         return Err(failure);
     }
@@ -139,6 +153,9 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
             if arguments.frame.is_some() { ("frame", summary.flips + 1) } else { ("draw", summary.draws) };
         let message = format!("the log has no {what} {wanted} that draws anything");
         return Err(Failure::usage(message, format!("it has {count}, numbered from 0")));
+    }
+    if let (Some(out), 0) = (&mut explanation, summary.draws) {
+        explain_state(out, &left);
     }
     if let Some(explanation) = explanation {
         write_text(&explanation)?;
@@ -186,11 +203,11 @@ fn follow(
     sources: Sources,
     options: Options,
     each: &mut dyn FnMut(Frame),
-) -> Result<Summary, Failure> {
+) -> Result<(Summary, State), Failure> {
     let memory = sources.memory.clone();
     let mut importer = Importer::new(state, sources, options, each);
     if let Some((first, end)) = arguments.push_buffer {
-        let stop = pushbuffer::follow(&memory, first, end, &mut |entry| importer.take(&entry));
+        let stop = pushbuffer::follow(&memory, (first, end), arguments.class, &mut |entry| importer.take(&entry));
         stop.map_err(|stop| {
             let (message, help) = match stop {
                 Stop::Outside(at) => (
@@ -207,10 +224,11 @@ fn follow(
             };
             Failure::invalid("NB1604", message, help)
         })?;
-        return Ok(importer.finish(None));
+        let state = importer.state().clone();
+        return Ok((importer.finish(None), state));
     }
-    let Some(path) = log else { return Ok(importer.finish(None)) };
-    let mut reader = Reader::new();
+    let Some(path) = log else { return Ok((importer.finish(None), State::default())) };
+    let mut reader = Reader::of_class(arguments.class);
     let mut take = |part: &[u8]| reader.feed(part, &mut |entry| importer.take(&entry));
     if path == Path::new("-") {
         let bytes = read::all(std::io::stdin(), LOG).map_err(|error| unreadable(path, error))?;
@@ -219,6 +237,7 @@ fn follow(
         read::parts(path, Kind::Stream, LOG, take).map_err(|error| unreadable(path, error))?;
     }
     reader.finish(&mut |entry| importer.take(&entry));
+    let state = importer.state().clone();
     let summary = importer.finish(Some(&reader));
     if summary.methods.is_empty() && summary.unknown_lines.0 > 0 {
         let (line, text) = summary.unknown_lines.1.clone().unwrap_or_default();
@@ -226,7 +245,7 @@ fn follow(
             format!("`{}` has no method that is known; line {line} is `{}`", shown::path(path), shown::name(&text));
         return Err(Failure::invalid("NB1605", message, "docs/import.md has an example of each form that is read"));
     }
-    Ok(summary)
+    Ok((summary, state))
 }
 
 /// Where frames go.
@@ -293,6 +312,29 @@ impl Out<'_> {
     }
 }
 
+/// Prints the state that a log without draws leaves, and what its combiners compute if it has all of their words.
+fn explain_state(out: &mut String, state: &State) {
+    let settings = settings(state);
+    out.push_str("no draw: the state that the log leaves\n\n");
+    settings.iter().for_each(|setting| _ = writeln!(out, "{setting}"));
+    let words = register_words(state);
+    if words.is_empty() {
+        return;
+    }
+    out.push_str("\ncombiners\n");
+    combiners(state).iter().for_each(|word| registers::line(out, word));
+    let mut bundle = Bundle::default();
+    bundle.files.insert("words".to_owned(), words.into_bytes());
+    let (language, chip) = (ProgramLanguage::Registers, state.family().profile());
+    match load_program_with(Path::new("words"), language, chip, &Limits::default(), &bundle) {
+        Ok((scene, plan)) => out.push_str(&explanation_text(&plan, &explain(&scene, &plan), None)),
+        Err(error) => {
+            let findings = error.diagnostics.iter().map(|finding| finding.message.as_str());
+            let _ = writeln!(out, "  no equations: {}", findings.collect::<Vec<_>>().join("; "));
+        }
+    }
+}
+
 /// Prints what each draw of a frame does.
 fn explain_frame(out: &mut String, kind: &str, frame: &Frame) {
     let plan = Plan::compile(&frame.scene, &PlanOptions::default()).ok();
@@ -334,10 +376,11 @@ fn summary_text(summary: &Summary, written: &[(String, bool)], compared: &[(Stri
     }
     let mut classes: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for ((class_number, method), used) in &summary.methods {
-        let place = class::find(*method).filter(|_| *class_number == KELVIN);
+        let family = Family::of(*class_number);
+        let place = family.and_then(|family| family.find(*method));
         let (kind, name, note) = match place {
             Some(place) => (place.method.treatment.summary(), place.method.name.to_owned(), place.method.note),
-            None if *class_number == KELVIN => ("not modelled", "unknown method".to_owned(), ""),
+            None if family.is_some() => ("not modelled", "unknown method".to_owned(), ""),
             None => ("of other classes", format!("class 0x{class_number:x}"), ""),
         };
         let note = if note.is_empty() || place.is_some_and(|place| place.method.treatment == Treatment::State) {

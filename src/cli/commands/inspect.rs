@@ -1,5 +1,7 @@
 //! The command `ninebit inspect`: a page that holds the model and a scene.
 
+mod steps;
+
 use super::*;
 use std::collections::BTreeMap;
 
@@ -52,7 +54,9 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     // Policies and shortcuts may draw another picture than the one that is shown before the module is compiled.
     let is_default = policies == loaded.plan.policies && arguments.shortcuts.is_none();
     let picture = if is_default { first_picture(&loaded.plan) } else { None };
+    let steps = steps::steps(&loaded.scene, policies, &loaded.source.text)?;
     let mut data = scene_data(&name, loaded, gathered, picture.as_ref())?;
+    data["steps"] = steps.into();
     data["chosen"] = chosen(&policies);
     data["variant"] = arguments.shortcuts.map(Shortcuts::names).into();
     Ok(arguments.output.write(page::page(&name, &data, &common()).as_bytes())?)

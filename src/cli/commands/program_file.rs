@@ -28,7 +28,7 @@ fn language_of(path: &Path) -> Option<ProgramLanguage> {
 
 /// Files of programs; in place of a log of methods, the register words of the combiners that it leaves set.
 #[derive(Debug)]
-struct Logs;
+struct Logs(Profile);
 
 impl Assets for Logs {
     fn resolve(&self, folder: &Path, name: &str) -> Result<PathBuf, PathError> {
@@ -37,7 +37,7 @@ impl Assets for Logs {
 
     fn bytes(&self, file: &Path, limit: FileLimit) -> Result<Vec<u8>, ReadError> {
         let whole = bytes(file, Kind::Stream, FileLimit { bytes: LARGEST_LOG, ..LOG })?;
-        match combiner_words(&whole) {
+        match combiner_words(&whole, self.0) {
             Some(words) => Ok(words.into_bytes()),
             None if whole.len() as u64 > limit.bytes => Err(ReadError::TooLarge(limit)),
             None => Ok(whole),
@@ -78,7 +78,7 @@ impl ProgramArguments {
         context: Context,
     ) -> Result<(Scene, Plan), Failure> {
         let note = "`--profile nv10` or `nv2a` chooses the chip, `--from` the language";
-        let loaded = load_program_with(path, language, self.profile, &Limits::default(), &Logs);
+        let loaded = load_program_with(path, language, self.profile, &Limits::default(), &Logs(self.profile));
         loaded.map_err(|error| refused_beside(error, note, context))
     }
 

@@ -58,7 +58,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     Ok(())
 }
 
-fn line(out: &mut String, word: &Description) {
+/// Writes a line of a word and its meaning.
+pub(super) fn line(out: &mut String, word: &Description) {
     // Writing to a string cannot fail.
     let _ = writeln!(out, "  {:04x}  {:<22}{:08x}  {}", word.method, word.name, word.value, word.meaning);
 }

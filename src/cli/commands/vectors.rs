@@ -6,6 +6,7 @@ mod compare;
 mod diff;
 mod export;
 mod list;
+mod scenes;
 mod show;
 mod sweep;
 

@@ -222,14 +222,30 @@ class Page {
     if (!options.some(([value]) => value === this.against)) this.against = "";
     $("against").replaceChildren(...options.map(([value, name]) => el("option", { value, selected: value === this.against }, name)));
     if (this.until !== null && this.until >= draws.length - 1) this.until = null;
-    const item = (draw) => el("li", {}, el("button", { "aria-current": (this.until ?? draws.length - 1) === draw.number ? "true" : "false", title: "The picture after this draw",
-      onclick: () => { this.until = draw.number === draws.length - 1 ? null : draw.number; this.refresh(); } },
-      `${draw.number} ${draw.name}`, el("span", { className: "quiet" }, ` → ${targets[draw.target].name}, ${draw.stages} general stage${draw.stages === 1 ? "" : "s"}`)));
+    // Of the scene as it came; a change may alter every picture.
+    const steps = this.text === this.data.text ? this.data.steps ?? [] : [];
+    const item = (draw) => {
+      const { picture, marks = [] } = steps[draw.number] ?? {};
+      return el("li", {}, el("button", { "aria-current": (this.until ?? draws.length - 1) === draw.number ? "true" : "false", title: "The picture after this draw",
+        onclick: () => { this.until = draw.number === draws.length - 1 ? null : draw.number; this.refresh(); } },
+        picture && el("img", { src: `data:image/png;base64,${picture}`, alt: "" }),
+        el("span", {}, `${draw.number} ${draw.name}`, el("span", { className: "quiet" }, ` → ${targets[draw.target].name}, ${draw.stages} general stage${draw.stages === 1 ? "" : "s"}`),
+          marks.map((mark) => el("span", { className: "mark" }, mark)))));
+    };
     $("draws").replaceChildren(...draws.map(item));
+    this.reveal($("draws"), $("draws").querySelector("[aria-current=true]"));
+    const marked = steps.filter((step) => step.marks.length > 0).length;
+    $("marked").textContent = marked ? `${marked} of ${draws.length} incomplete` : "";
     this.redraw();
     const { width, height } = targets[this.target];
     if (this.at && (this.at[0] >= width || this.at[1] >= height)) this.at = null;
     this.choose(this.at ?? this.middle(width, height));
+  }
+
+  // Scrolls a list, and nothing around it, to one of its parts.
+  reveal(list, part) {
+    const top = (part?.offsetTop ?? 0) - list.offsetTop;
+    if (part && (top < list.scrollTop || top + part.offsetHeight > list.scrollTop + list.clientHeight)) list.scrollTop = top - list.clientHeight / 2;
   }
 
   // The pixel nearest to the middle, on its row or column, that is not of one colour with the corner, a light one if there is any: most likely something is drawn there.

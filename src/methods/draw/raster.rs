@@ -9,7 +9,8 @@ use ninebit::state::{
 use ninebit_program::registers::{color_of, raster};
 
 use super::view::View;
-use crate::class;
+use crate::celsius;
+use crate::class::{self, Family};
 use crate::gap::Gap;
 
 /// The stencil operations' values, in the order of [`StencilOperation`].
@@ -117,7 +118,20 @@ fn figures(view: &mut View<'_>, draw: &mut Draw) {
     }
     if corners {
         draw.point_size = (view.get(class::SET_POINT_SIZE) & 0x1ff) as u16;
-        draw.point_sprite = view.enabled(class::SET_POINT_SMOOTH_ENABLE);
+        let smooth = view.enabled(class::SET_POINT_SMOOTH_ENABLE);
+        // Sprites are Kelvin's; the bit made round points before.
+        match view.family() {
+            Family::Kelvin => draw.point_sprite = smooth,
+            Family::Celsius if smooth => view.note(Gap::NotModelled("smooth points".into())),
+            Family::Celsius => {}
+        }
+    }
+    if view.family() == Family::Celsius {
+        for number in celsius::NOT_MODELLED {
+            if view.state().get(number).unwrap_or(0) != 0 {
+                view.note(Gap::NotModelled(Family::Celsius.label(number)));
+            }
+        }
     }
 }
 
@@ -154,11 +168,15 @@ fn fog(view: &mut View<'_>) -> Fog {
     fog.enabled = view.enabled(class::SET_FOG_ENABLE);
     if fog.enabled {
         view.get(class::SET_FOG_COLOR);
-        let mode = choose(view, class::SET_FOG_MODE, &FOG_MODES);
+        // Celsius has no absolute linear fog.
+        let has = |mode: FogMode| view.family() == Family::Kelvin || mode != FogMode::LinearAbs;
+        let modes: Vec<_> = FOG_MODES.into_iter().filter(|(mode, _)| has(*mode)).collect();
+        let mode = choose(view, class::SET_FOG_MODE, &modes);
         let mut parameter = |n: u32| view.float(class::SET_FOG_PARAMS + 4 * n);
         let (p0, p1) = (parameter(0), parameter(1));
         let p2 = if mode.is_linear() { 0.0 } else { parameter(2) };
-        fog.function = Some(FogFunction { mode, p0, p1, p2, per_vertex: false });
+        let per_vertex = view.family() == Family::Celsius && mode.is_linear();
+        fog.function = Some(FogFunction { mode, p0, p1, p2, per_vertex });
     }
     fog
 }

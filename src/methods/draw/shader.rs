@@ -1,11 +1,11 @@
 //! The texture shader and the combiners of a draw.
 
 use ninebit::state::{Combiners, DotMapping, Named, Profile, ShaderOperation, ShaderStage};
+use ninebit_program::registers::layout::{OWN_CONSTANTS, config, stages};
 use ninebit_program::registers::{RegisterWords, Word, decode};
 
-use super::texture::of_unit;
 use super::view::View;
-use crate::class;
+use crate::class::{self, STAGE_CUBE, STAGE_THREE, STAGE_TWO, of_unit};
 use crate::gap::Gap;
 
 /// The codes of the dot mappings.
@@ -17,13 +17,6 @@ pub(crate) const DOT_MAPPINGS: [(DotMapping, u32); 6] = [
     (DotMapping::Hilo1, 4),
     (DotMapping::HiloHemisphere, 7),
 ];
-
-/// Code of a projected texture of two dimensions in SET_SHADER_STAGE_PROGRAM.
-pub(crate) const TWO: u32 = 1;
-/// Code of a projected texture of three dimensions.
-pub(crate) const THREE: u32 = 2;
-/// Code of a cube map.
-pub(crate) const CUBE: u32 = 3;
 
 /// Returns the code of a stage.
 pub(crate) fn code(view: &mut View<'_>, unit: usize) -> u32 {
@@ -42,7 +35,7 @@ pub(crate) fn stage(view: &mut View<'_>, unit: usize) -> ShaderStage {
     };
     stage.operation = match code {
         0 => Op::None,
-        TWO | THREE | CUBE => Op::Sample,
+        STAGE_TWO | STAGE_THREE | STAGE_CUBE => Op::Sample,
         4 => Op::PassThrough,
         5 => {
             let bits = view.get(class::SET_SHADER_CLIP_PLANE_MODE) >> (4 * unit);
@@ -97,29 +90,33 @@ pub(crate) fn stage(view: &mut View<'_>, unit: usize) -> ShaderStage {
 
 /// Reads the combiners; `None` if the chip does not accept their words, which is noted.
 pub(crate) fn combiners(view: &mut View<'_>) -> Option<Combiners> {
-    let mut words = RegisterWords::new(Profile::Nv2a);
-    let config = view.get(Word::RcConfig.method(Profile::Nv2a));
-    words.set(Word::RcConfig, 0, config & 0x0001_110f);
-    let stages = (config & 0xf).clamp(1, 8) as usize;
-    words.set(Word::RcConfig, 0, words.get(Word::RcConfig, 0) & !0xf | stages as u32);
-    for word in Word::ALL.iter().filter(|word| **word != Word::RcConfig) {
-        let used = match word {
-            Word::RcColor | Word::RcFinal0 | Word::RcFinal1 => word.count(Profile::Nv2a),
-            Word::RcConstantColor0 if config >> 12 & 1 == 0 => 1,
-            Word::RcConstantColor1 if config >> 16 & 1 == 0 => 1,
-            _ => stages,
+    let chip = view.family().profile();
+    let mut words = RegisterWords::new(chip);
+    let (word, index) = config(chip);
+    let config = view.own(word.method(chip) + 4 * index as u32);
+    let of_stages = stages(chip);
+    let count = of_stages.value_in(config).clamp(1, chip.general_stages() as u32);
+    let rest = config & !of_stages.put(of_stages.most());
+    words.set(word, index, if chip == Profile::Nv2a { rest & 0x0001_1100 } else { rest } | of_stages.put(count));
+    let own = OWN_CONSTANTS.map(|field| chip == Profile::Nv2a && field.is_set(config));
+    for of in Word::ALL.iter().filter(|of| of.count(chip) > 0) {
+        let used = match of {
+            Word::RcColor | Word::RcFinal0 | Word::RcFinal1 => of.count(chip),
+            Word::RcConstantColor0 if !own[0] => 1,
+            Word::RcConstantColor1 if !own[1] => 1,
+            _ => (count as usize).min(of.count(chip)),
         };
-        for index in 0..used {
-            let method = word.method(Profile::Nv2a) + 4 * index as u32;
-            let constant = matches!(word, Word::RcColor | Word::RcConstantColor0 | Word::RcConstantColor1);
+        for at in (0..used).filter(|at| (*of, *at) != (word, index)) {
+            let method = of.method(chip) + 4 * at as u32;
+            let constant = matches!(of, Word::RcColor | Word::RcConstantColor0 | Word::RcConstantColor1);
             // Constants that no input reads are never set by programs.
-            let value = if constant { view.get_or(method, 0) } else { view.get(method) };
-            words.set(*word, index, value);
+            let value = if constant { view.state().get(method).unwrap_or(0) } else { view.own(method) };
+            words.set(*of, at, value);
         }
     }
     match decode(&words) {
         Ok(combiners) => {
-            constants(view, &combiners, config);
+            constants(view, &combiners, own);
             Some(combiners)
         }
         Err(refusals) => {
@@ -132,17 +129,24 @@ pub(crate) fn combiners(view: &mut View<'_>) -> Option<Combiners> {
 }
 
 /// Notes constants that a program reads and the log never set.
-fn constants(view: &mut View<'_>, combiners: &Combiners, config: u32) {
+fn constants(view: &mut View<'_>, combiners: &Combiners, own: [bool; 2]) {
     use ninebit::state::{FinalRegister, Register};
+    let chip = view.family().profile();
+    let mut needs = |word: Word, index: usize| {
+        let method = word.method(chip) + 4 * index as u32;
+        if view.state().get(method).is_none() {
+            view.missing_own(method);
+        }
+    };
     for (n, stage) in combiners.stages.iter().enumerate() {
         for (k, register) in [Register::ConstantColor0, Register::ConstantColor1].into_iter().enumerate() {
             let portions = [&stage.rgb, &stage.alpha];
             if portions.iter().any(|portion| portion.inputs.iter().any(|input| input.register == register)) {
-                let own = config >> [12, 16][k] & 1 != 0;
-                let word = [Word::RcConstantColor0, Word::RcConstantColor1][k];
-                let method = word.method(Profile::Nv2a) + if own { 4 * n as u32 } else { 0 };
-                if view.known(method).is_none() {
-                    view.missing(method);
+                match chip {
+                    Profile::Nv10 => needs(Word::RcColor, k),
+                    Profile::Nv2a => {
+                        needs([Word::RcConstantColor0, Word::RcConstantColor1][k], if own[k] { n } else { 0 });
+                    }
                 }
             }
         }
@@ -150,9 +154,8 @@ fn constants(view: &mut View<'_>, combiners: &Combiners, config: u32) {
     let inputs = combiners.final_combiner.inputs.iter().chain([&combiners.final_combiner.g]);
     for input in inputs {
         for (k, register) in [FinalRegister::ConstantColor0, FinalRegister::ConstantColor1].into_iter().enumerate() {
-            let method = Word::RcColor.method(Profile::Nv2a) + 4 * k as u32;
-            if input.register == register && view.known(method).is_none() {
-                view.missing(method);
+            if input.register == register {
+                needs(Word::RcColor, k);
             }
         }
     }

@@ -1,5 +1,6 @@
 //! The surfaces that a draw or a clear goes into.
 
+use ninebit::legality;
 use ninebit::state::{DepthFormat, Named, Rectangle, SurfaceFormat};
 use ninebit_program::registers::raster::{self, SURFACE_COLOR};
 
@@ -59,6 +60,15 @@ pub(crate) fn surface(view: &mut View<'_>) -> Option<Surface> {
         view.bad(class::SET_SURFACE_FORMAT);
         return None;
     };
+    let chip = view.family().profile();
+    if legality::surface::format(format, chip, None).is_some() {
+        view.bad(class::SET_SURFACE_FORMAT);
+        return None;
+    }
+    if legality::surface::depth_format(depth, chip, None).is_some() {
+        view.bad(class::SET_CONTROL0);
+        return None;
+    }
     if width == 0 || height == 0 || x + width > 4096 || y + height > 4096 {
         let what = format!("a surface of {width} x {height} pixels at {x}, {y}");
         view.note(Gap::NotModelled(what));

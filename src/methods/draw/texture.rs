@@ -10,7 +10,8 @@ use ninebit::state::{
 use ninebit_program::registers::color_of;
 
 use super::view::View;
-use crate::class;
+use crate::celsius;
+use crate::class::{self, Family, of_unit};
 use crate::gap::Gap;
 use crate::memory::{self, Layout, Memory};
 
@@ -122,11 +123,6 @@ pub(crate) struct Image {
     pub(crate) pitch: Option<u32>,
 }
 
-/// Returns the method of unit `unit` for the method of unit 0.
-pub(crate) fn of_unit(method: u32, unit: usize) -> u32 {
-    method + 64 * unit as u32
-}
-
 /// Reads the image of a unit; `None` if the model has no such texture, which is noted.
 pub(crate) fn image(view: &mut View<'_>, unit: usize) -> Option<Image> {
     let mut word = |method| view.get(of_unit(method, unit));
@@ -136,6 +132,10 @@ pub(crate) fn image(view: &mut View<'_>, unit: usize) -> Option<Image> {
         view.note(Gap::NotModelled(format!("texture format 0x{code:02x} of unit {unit}")));
         return None;
     };
+    if view.family() == Family::Celsius && !celsius::begins_at_corners(view.own(celsius::TEX_FORMAT + 4 * unit as u32))
+    {
+        view.note(Gap::NotModelled(format!("texel coordinates from the texels' centres at unit {unit}")));
+    }
     let cube = format >> 2 & 1 != 0;
     let dimensions = format >> 4 & 0xf;
     if linear {
@@ -325,6 +325,9 @@ pub(crate) fn unit(view: &mut View<'_>, unit: usize, image: &Image, projects: bo
     }
     let anisotropy = 1 << (control >> 4 & 3);
     state.anisotropy = anisotropy;
+    if control >> 2 & 1 != 0 {
+        view.note(Gap::NotModelled(format!("texels of alpha 0 that remove the pixel at unit {unit}")));
+    }
     let mode =
         [None, Some(ColorKeyMode::Alpha), Some(ColorKeyMode::Color), Some(ColorKeyMode::Texel)][(control & 3) as usize];
     if let Some(mode) = mode {

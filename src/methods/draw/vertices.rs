@@ -3,22 +3,24 @@
 
 use std::collections::HashMap;
 
+use ninebit::number::convert::snap;
+use ninebit::number::transform::{product, sum};
 use ninebit::state::{
-    ClipDepth, DepthFormat, Draw, PolygonMode, Positions, Profile, Vertex, VertexColor, VertexDepths, Vertices,
-    Viewport,
+    ClipDepth, DepthFormat, Draw, PolygonMode, Positions, Vertex, VertexColor, VertexDepths, Vertices, Viewport,
 };
 use ninebit::vertex::fog;
 use ninebit::vertex::point::eighths;
 
 use super::view::View;
-use crate::class;
+use crate::celsius;
+use crate::class::{self, Family};
 use crate::gap::Gap;
 use crate::memory::Memory;
 use crate::state::{Batch, State};
 use crate::vertex::fixed::FixedFunction;
 use crate::vertex::formats::ArrayFormat;
 use crate::vertex::microcode::{CONSTANTS, Constants, Program, SLOTS};
-use crate::vertex::{ATTRIBUTES, Attributes, DEFAULT, Outputs};
+use crate::vertex::{ATTRIBUTES, Attributes, DEFAULT, Outputs, attribute};
 
 /// Fills in the vertices of a draw; returns whether there are any.
 pub(crate) fn vertices_of(
@@ -29,7 +31,10 @@ pub(crate) fn vertices_of(
     draw: &mut Draw,
 ) -> bool {
     for (method, count) in &batch.dropped {
-        view.note(Gap::Dropped(*method, *count));
+        view.note(Gap::Dropped(view.family(), *method, *count));
+    }
+    for method in &batch.open {
+        view.note(Gap::NotModelled(view.family().label(*method)));
     }
     if batch.cut {
         view.note(Gap::TooMany("the draw has more vertices than a scene may have; the rest is left out".into()));
@@ -43,7 +48,7 @@ pub(crate) fn vertices_of(
         draw.point_sizes = Some(outputs.iter().map(|output| eighths(output.point_size.into())).collect());
     }
     // The fixed-function pipe has seen to it.
-    let specular = matches!(transform, Stage::Fixed(_)) || view.enabled(class::SET_SPECULAR_ENABLE);
+    let specular = matches!(transform, Stage::Fixed(..)) || view.enabled(class::SET_SPECULAR_ENABLE);
     if view.get_or(class::SET_LIGHT_TWO_SIDE_ENABLE, 0) != 0 && draw.topology.has_faces() {
         view.note(Gap::NotModelled("colours of back faces".into()));
     }
@@ -52,13 +57,13 @@ pub(crate) fn vertices_of(
         test.vertex_depths = VertexDepths::Fractions;
     }
     draw.positions = positions;
-    let fog = draw.fog;
+    let (fog, chip) = (draw.fog, view.family().profile());
     let vertex = |(output, position): (&Outputs, [f32; 4])| {
         let finite = |set: [f32; 4]| set.map(|number| if number.is_finite() { number } else { 0.0 });
         let color =
             |color: [f32; 4]| VertexColor::Floats(color.map(|c| if c.is_nan() { 0.0 } else { c.clamp(0.0, 1.0) }));
         let coordinate = (fog.enabled && fog.function.is_some()).then_some(output.fog);
-        let passed = fog.function.map_or(1.0, |function| fog::passed(&function, Profile::Nv2a, output.fog));
+        let passed = fog.function.map_or(1.0, |function| fog::passed(&function, chip, output.fog));
         Vertex {
             position,
             diffuse: color(output.diffuse),
@@ -81,29 +86,38 @@ pub(crate) fn vertices_of(
 /// The transform that a draw uses.
 enum Stage {
     Program(Box<(Program, Constants)>),
-    Fixed(Box<FixedFunction>),
+    Fixed(Box<FixedFunction>, Family),
+    /// Vertices that are scaled and moved, but not transformed: Celsius has this in place of programs.
+    Passed(ScaleAndOffset),
 }
+
+/// The scale and what is added.
+type ScaleAndOffset = [[f32; 4]; 2];
 
 impl Stage {
     fn read(view: &mut View<'_>) -> Stage {
+        if view.family() == Family::Celsius && view.own(celsius::VIEW_MATRIX_ENABLE) & celsius::PASSES != 0 {
+            return passed(view);
+        }
         if view.get(class::SET_TRANSFORM_EXECUTION_MODE) & 3 == 2 {
             return Stage::Program(Box::new(program(view)));
         }
-        let fixed = FixedFunction::read(&mut |method| view.known(method));
+        let fixed = FixedFunction::read(view.family().profile(), &mut |method| view.known(method));
         for method in &fixed.missing {
             view.missing(*method);
         }
-        for (method, word) in &fixed.unknown {
-            view.note(Gap::BadValue(*method, *word));
+        for (method, _) in &fixed.unknown {
+            view.bad(*method);
         }
-        Stage::Fixed(Box::new(fixed))
+        Stage::Fixed(Box::new(fixed), view.family())
     }
 
     /// Returns which attributes it reads.
     fn reads(&self) -> [bool; ATTRIBUTES] {
         match self {
             Stage::Program(program) => program.0.inputs(),
-            Stage::Fixed(fixed) => fixed.inputs(),
+            Stage::Fixed(fixed, _) => fixed.inputs(),
+            Stage::Passed(_) => std::array::from_fn(|n| n == attribute::POSITION || n == attribute::DIFFUSE),
         }
     }
 
@@ -113,9 +127,53 @@ impl Stage {
                 let (program, constants) = &mut **program;
                 program.run(constants, attributes)
             }
-            Stage::Fixed(fixed) => fixed.run(attributes),
+            Stage::Fixed(fixed, family) => {
+                let mut outputs = fixed.run(attributes);
+                if *family == Family::Celsius {
+                    outputs.position = in_window(outputs.position);
+                }
+                outputs
+            }
+            Stage::Passed([scale, offset]) => {
+                let [x, y, z, inverse] = std::array::from_fn(|n| {
+                    let scaled = product(attributes[attribute::POSITION][n].to_bits(), scale[n].to_bits());
+                    f32::from_bits(sum([scaled, offset[n].to_bits()]))
+                });
+                let zero = [0.0; 4];
+                Outputs {
+                    position: in_window([x, y, z, 1.0 / inverse]),
+                    diffuse: attributes[attribute::DIFFUSE],
+                    specular: attributes[attribute::SPECULAR],
+                    back_diffuse: zero,
+                    back_specular: zero,
+                    fog: 0.0,
+                    point_size: 0.0,
+                    coordinates: std::array::from_fn(|set| attributes[attribute::TEXTURE + set]),
+                }
+            }
         }
     }
+}
+
+/// Moves a position of Celsius into the window. The class cuts sixteenths towards its own origin (envytools' model of NV10).
+fn in_window([x, y, z, w]: [f32; 4]) -> [f32; 4] {
+    let moved = |c: f32| if c.abs() < 2.0 * celsius::ORIGIN { snap(c) as f32 / 16.0 } else { c } + celsius::ORIGIN;
+    [moved(x), moved(y), z, w]
+}
+
+/// Reads how vertices pass that are not transformed, and notes what the model does not have of it.
+fn passed(view: &mut View<'_>) -> Stage {
+    if view.enabled(class::SET_FOG_ENABLE) {
+        view.note(Gap::NotModelled("fog of vertices that are not transformed".into()));
+    }
+    let divided = view.own(celsius::VIEW_MATRIX_ENABLE) & celsius::DIVIDES;
+    for unit in 0..2 {
+        if view.get(class::SET_SHADER_STAGE_PROGRAM) >> (5 * unit) & 0x1f != 0 && divided >> (unit + 1) & 1 == 0 {
+            view.note(Gap::NotModelled(format!("coordinates of unit {unit} that are not divided by w")));
+        }
+    }
+    let mut row = |first: u32| [0, 1, 2, 3].map(|n| f32::from_bits(view.own(first + 4 * n)));
+    Stage::Passed([row(celsius::PASSED_SCALE), row(celsius::PASSED_SCALE + 16)])
 }
 
 /// Reads the vertex program with its constants, and notes what the log never set of them.
@@ -251,10 +309,14 @@ fn inline(view: &mut View<'_>, batch: &Batch, reads: &[bool; ATTRIBUTES]) -> (Ve
     let own = current_of_others(view, &arrays, reads);
     let mut offsets = [0; ATTRIBUTES];
     let mut size = 0_usize;
-    for (offset, array) in offsets.iter_mut().zip(&arrays) {
-        if let Some((_, format)) = array {
-            *offset = size.next_multiple_of(format.number.bytes());
-            size = *offset + format.bytes();
+    let order = match view.family() {
+        Family::Kelvin => &std::array::from_fn::<usize, ATTRIBUTES, _>(|n| n)[..],
+        Family::Celsius => &celsius::ARRAY_ORDER,
+    };
+    for attribute in order {
+        if let Some((_, format)) = arrays[*attribute] {
+            offsets[*attribute] = size.next_multiple_of(format.number.bytes());
+            size = offsets[*attribute] + format.bytes();
         }
     }
     let size = size.next_multiple_of(4);

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use crate::class;
+use crate::celsius::Known;
+use crate::class::{self, Family};
 use crate::gap::Gap;
 use crate::state::State;
 
@@ -51,11 +52,24 @@ impl<'a> View<'a> {
         self.state
     }
 
-    /// Returns a word. One that is not known is noted.
+    /// Returns the family of the class.
+    pub(crate) fn family(&self) -> Family {
+        self.state.family()
+    }
+
+    /// Returns a word, by Kelvin's number. One that is not known is noted.
     pub(crate) fn get(&mut self, method: u32) -> u32 {
         self.known(method).unwrap_or_else(|| {
-            self.unset.insert(method);
+            self.missing(method);
             neutral(method)
+        })
+    }
+
+    /// Returns a word by the class's own number. One that is not known is noted.
+    pub(crate) fn own(&mut self, number: u32) -> u32 {
+        self.state.get(number).unwrap_or_else(|| {
+            self.unset.insert(number);
+            0
         })
     }
 
@@ -66,7 +80,10 @@ impl<'a> View<'a> {
 
     /// Returns a word if it is known.
     pub(crate) fn known(&self, method: u32) -> Option<u32> {
-        self.state.get(method)
+        match self.state.known(method) {
+            Known::Word(word) => Some(word),
+            _ => None,
+        }
     }
 
     /// Returns a word as a number.
@@ -86,24 +103,38 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Notes a word that is missing.
+    /// Notes a word that is missing, by Kelvin's number.
     pub(crate) fn missing(&mut self, method: u32) {
-        self.unset.insert(method);
+        match self.state.known(method) {
+            Known::Unset(number) => _ = self.unset.insert(number),
+            Known::Word(_) => {}
+            Known::Absent => {
+                let what = format!("the class has nothing in place of Kelvin's {}", Family::Kelvin.label(method));
+                self.note(Gap::NotModelled(what));
+            }
+        }
+    }
+
+    /// Notes a word of the class's own that is missing.
+    pub(crate) fn missing_own(&mut self, number: u32) {
+        self.unset.insert(number);
     }
 
     /// Notes that a method does not take its value.
     pub(crate) fn bad(&mut self, method: u32) {
-        let word = self.state.get(method).unwrap_or_else(|| neutral(method));
-        self.note(Gap::BadValue(method, word));
+        let family = self.family();
+        let number = family.own(method).unwrap_or(method);
+        let word = self.state.get(number).unwrap_or_else(|| neutral(method));
+        self.note(Gap::BadValue(family, number, word));
     }
 
     /// Returns all gaps, words that were never set as ranges first.
     pub(crate) fn finish(self) -> Vec<Gap> {
-        let mut gaps: Vec<Gap> = Vec::new();
+        let (mut gaps, family): (Vec<Gap>, Family) = (Vec::new(), self.family());
         for method in self.unset {
             match gaps.last_mut() {
-                Some(Gap::Unset(_, last)) if *last + 4 == method => *last = method,
-                _ => gaps.push(Gap::Unset(method, method)),
+                Some(Gap::Unset(.., last)) if *last + 4 == method => *last = method,
+                _ => gaps.push(Gap::Unset(family, method, method)),
             }
         }
         gaps.extend(self.gaps);

@@ -2,8 +2,10 @@
 
 use std::sync::Arc;
 
+use ninebit::rop;
 use ninebit::state::{
-    CUBE_FACES, DepthFormat, Palette, Scene, Texels, Texture, TextureFormat, TextureImage, TextureKind,
+    CUBE_FACES, DepthFormat, Palette, Profile, Scene, Target, Texels, Texture, TextureFormat, TextureImage,
+    TextureKind, depth_stencil,
 };
 
 use super::{ExportError, refuse};
@@ -62,9 +64,14 @@ impl MemoryMap {
                 let image = words.as_ref().map_or(Vec::new(), |words| bytes(words, format, size, layout));
                 placed.reserve(pitch * target.height, &image)
             };
-            let colors = put(&target.contents, raw(target.format), pitch(target.width, target.format.bytes()))?;
+            let [contents, depth_contents] = match scene.profile {
+                Profile::Nv2a => [target.contents.clone(), target.depth_contents.clone()],
+                Profile::Nv10 => initial(target),
+            };
+            let colors = put(&contents, raw(target.format), pitch(target.width, target.format.bytes()))?;
             let format = target.depth.map_or(DepthFormat::Z24S8, |depth| depth.format);
-            let depths = put(&target.depth_contents, format.texture_format(), pitch(target.width, 4))?;
+            let format = format.texture_format();
+            let depths = put(&depth_contents, format, pitch(target.width, format.bytes()))?;
             placed.surfaces.push(colors);
             placed.depths.push(depths);
         }
@@ -101,6 +108,17 @@ impl MemoryMap {
         self.bytes.resize(end as usize, 0);
         Ok(at)
     }
+}
+
+/// Returns the words that a target's colours and depths begin as, its clears among them.
+fn initial(target: &Target) -> [Option<Arc<[u32]>>; 2] {
+    let all = |word: u32| vec![word; target.width as usize * target.height as usize].into();
+    let colors = || all(rop::surface::pack(target.format, target.clear_color));
+    let depths = target.depth.map(|depth| {
+        let word = depth_stencil(depth.clear, depth.clear_stencil);
+        target.depth_contents.clone().unwrap_or_else(|| all(word))
+    });
+    [Some(target.contents.clone().unwrap_or_else(colors)), depths]
 }
 
 /// Returns the bytes of a texture as they lie in memory.

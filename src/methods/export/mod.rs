@@ -3,6 +3,7 @@
 mod memory;
 mod print;
 mod state;
+mod transform;
 mod units;
 mod vertices;
 
@@ -13,13 +14,16 @@ use ninebit::state::{Profile, Scene};
 
 pub use print::{console_program, push_buffer, trace};
 
-use crate::class;
+use crate::celsius;
+use crate::class::{self, Family};
 use crate::export::memory::MemoryMap;
 use crate::vertex::{attribute, microcode};
 
 /// A scene as methods of the 3D class.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Methods {
+    /// The family of the class.
+    pub family: Family,
     /// Methods in bytes, with their words, in order.
     pub writes: Vec<(u32, u32)>,
     /// The image of memory from address 0 on that they read.
@@ -55,13 +59,29 @@ fn refuse<T>(message: impl Into<String>) -> Result<T, ExportError> {
 /// Collects words. A word of state that is as it was is not sent again.
 #[derive(Debug, Default)]
 struct Words {
+    family: Family,
     writes: Vec<(u32, u32)>,
     state: std::collections::HashMap<u32, u32>,
+    /// Kelvin's number of the first state that the class does not have.
+    lacking: Option<u32>,
 }
 
 impl Words {
-    /// Sets a word of state.
+    /// Sets a word of state, by Kelvin's number.
     fn set(&mut self, method: u32, word: u32) {
+        match self.family {
+            Family::Kelvin => self.own(method, word),
+            Family::Celsius => match celsius::own(method, word) {
+                Some((number, word)) => self.own(number, word),
+                // Nothing to say where the class always is as the scene asks.
+                None if celsius::constant(method) == Some(word) => {}
+                None => _ = self.lacking.get_or_insert(method),
+            },
+        }
+    }
+
+    /// Sets a word of state, by the class's own number.
+    fn own(&mut self, method: u32, word: u32) {
         if self.state.insert(method, word) != Some(word) {
             self.writes.push((method, word));
         }
@@ -72,25 +92,35 @@ impl Words {
         self.set(method, number.to_bits());
     }
 
-    /// Sends a word that does something.
+    /// Sends a word that does something, by Kelvin's number.
     fn send(&mut self, method: u32, word: u32) {
-        self.writes.push((method, word));
+        match self.family.own(method) {
+            Some(number) => self.writes.push((number, word)),
+            None => _ = self.lacking.get_or_insert(method),
+        }
     }
 }
 
-/// Returns the methods of a scene of nv2a. `plan` is the plan of the same scene, without pruning or with.
+/// Returns the methods of a scene. `plan` is the plan of the same scene, without pruning or with. A scene of nv10 becomes methods of Celsius, which
+/// has no clears: its targets begin as memory is.
 ///
 /// # Errors
-/// The scene is of another chip, or says what no word says.
+/// The scene says what no word says.
 pub fn export(scene: &Scene, plan: &Plan) -> Result<Methods, ExportError> {
-    if scene.profile != Profile::Nv2a {
-        return refuse("the scene is of GeForce 256, whose class has other methods: set `profile: Nv2a`");
-    }
-    let mut words = Words::default();
+    let family = match scene.profile {
+        Profile::Nv2a => Family::Kelvin,
+        Profile::Nv10 => Family::Celsius,
+    };
+    let mut words = Words { family, ..Words::default() };
     let placed = MemoryMap::new(scene)?;
-    program(&mut words);
-    for (index, target) in scene.targets.iter().enumerate() {
-        state::clear(&mut words, &placed, index, target);
+    match family {
+        Family::Kelvin => {
+            program(&mut words);
+            for (index, target) in scene.targets.iter().enumerate() {
+                state::clear(&mut words, &placed, index, target);
+            }
+        }
+        Family::Celsius => transform::initial(&mut words),
     }
     for (index, draw) in scene.draws.iter().enumerate() {
         let of_draw = |error: ExportError| ExportError { draw: Some(index), ..error };
@@ -101,10 +131,16 @@ pub fn export(scene: &Scene, plan: &Plan) -> Result<Methods, ExportError> {
         units::units(&mut words, scene, &placed, draw).map_err(of_draw)?;
         let planned = &plan.draws()[index];
         vertices::vertices(&mut words, scene, draw, &planned.assembly).map_err(of_draw)?;
+        if let Some(method) = words.lacking {
+            let message = format!("the class of GeForce 256 has nothing in place of {}", Family::Kelvin.label(method));
+            return Err(ExportError { draw: Some(index), message });
+        }
     }
-    words.send(class::FLIP_STALL, 0);
+    if family == Family::Kelvin {
+        words.send(class::FLIP_STALL, 0);
+    }
     let surfaces = placed.surfaces.clone();
-    Ok(Methods { writes: words.writes, memory: placed.bytes, surfaces })
+    Ok(Methods { family, writes: words.writes, memory: placed.bytes, surfaces })
 }
 
 /// Sends the vertex program that hands vertices through, and makes it the transform.

@@ -6,20 +6,27 @@ use ninebit::state::Target;
 
 use super::Methods;
 use super::memory::pitch;
-use crate::class;
+use crate::class::{self, Family};
 
 const CONSOLE: &str = include_str!("console.c");
 
-/// Writes methods as xemu traces them: a line each, with the method's name.
+/// Writes methods as emulators trace them: Kelvin's as xemu does, a line each, with the method's name; Celsius's as Bochs does, with numbers that
+/// count words.
 pub fn trace(methods: &Methods) -> String {
+    let class = methods.family.class();
     let mut text = String::with_capacity(72 * methods.writes.len());
     for (method, word) in &methods.writes {
-        let (name, place) = class::find(*method).map_or(("?".to_owned(), 0), |place| {
+        // Writing to a string cannot fail.
+        if methods.family == Family::Celsius {
+            let number = method / 4;
+            let _ =
+                writeln!(text, "execute_command: obj 0x0, class 0x{class:04x}, method 0x{number:x}, param 0x{word:x}");
+            continue;
+        }
+        let (name, place) = methods.family.find(*method).map_or(("?".to_owned(), 0), |place| {
             (format!("NV097_{}", place.method.name), method - place.method.number)
         });
-        // Writing to a string cannot fail.
-        let _ =
-            writeln!(text, "nv2a_pgraph_method 0: 0x{:x} -> 0x{method:04x} {name}[{place}] 0x{word:x}", class::KELVIN);
+        let _ = writeln!(text, "nv2a_pgraph_method 0: 0x{class:x} -> 0x{method:04x} {name}[{place}] 0x{word:x}");
     }
     text
 }
@@ -53,6 +60,10 @@ pub fn push_buffer(methods: &Methods) -> Vec<u32> {
     const LONGEST: usize = 0x7ff;
     let mut words = Vec::with_capacity(methods.writes.len() + methods.writes.len() / 2);
     let mut rest = &methods.writes[..];
+    if methods.family != Family::Kelvin {
+        // Binds the class to the first subchannel.
+        words.extend([1 << 18, methods.family.class()]);
+    }
     while let [(first, _), ..] = rest {
         let run = |step: u32| {
             let follows = rest

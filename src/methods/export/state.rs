@@ -2,14 +2,14 @@
 
 use ninebit::rop;
 use ninebit::state::{
-    Cull, DepthFormat, DepthRange, DepthTest, Draw, Fog, FrontFace, LineRasterization, PolygonStipple, ProvokingVertex,
-    Rectangle, Scene, ShadeModel, StencilTest, Target,
+    Cull, DepthFormat, DepthRange, DepthTest, Draw, Fog, FrontFace, LineRasterization, PolygonMode, PolygonStipple,
+    ProvokingVertex, Rectangle, Scene, ShadeModel, StencilTest, Target, Topology,
 };
 use ninebit_program::registers::{color_word, raster};
 
 use super::memory::{MemoryMap, pitch};
 use super::{ExportError, Words, refuse};
-use crate::class;
+use crate::class::{self, Family};
 use crate::draw::raster::{FOG_MODES, POLYGON_MODES, STENCIL_OPERATIONS};
 
 /// Returns the code of a choice.
@@ -27,7 +27,11 @@ fn bind(words: &mut Words, placed: &MemoryMap, index: usize, target: &Target) {
     let depth = target.depth.map_or(DepthFormat::Z24S8, |depth| depth.format);
     let layout = if placed.swizzled[index] { 2 } else { 1 };
     let sides = if placed.swizzled[index] { target.width.ilog2() << 16 | target.height.ilog2() << 24 } else { 0 };
-    let zeta = if depth.has_stencil() { 2 } else { 1 };
+    let zeta = match (depth.has_stencil(), words.family) {
+        (true, Family::Kelvin) => 2,
+        (true, Family::Celsius) => 0,
+        (false, _) => 1,
+    };
     words.set(class::SET_SURFACE_FORMAT, raster::surface_format(target.format) | zeta << 4 | layout << 8 | sides);
     let zeta_pitch = pitch(target.width, if depth.has_stencil() { 4 } else { 2 });
     words.set(class::SET_SURFACE_PITCH, pitch(target.width, target.format.bytes()) & 0xffff | zeta_pitch << 16);
@@ -97,7 +101,9 @@ pub(super) fn draw(words: &mut Words, scene: &Scene, draw: &Draw) -> Result<(), 
     let mask = (0..4).map(|n| raster::COLOR_MASK[n].put(draw.color_mask[n].into())).sum();
     words.set(class::SET_COLOR_MASK, mask);
     words.set(class::SET_DITHER_ENABLE, 0);
-    words.set(class::SET_LOGIC_OP_ENABLE, 0);
+    if words.family == Family::Kelvin {
+        words.set(class::SET_LOGIC_OP_ENABLE, 0);
+    }
     words.set(class::SET_DEPTH_TEST_ENABLE, draw.depth_test.is_some().into());
     if let Some(test) = &draw.depth_test {
         depth(words, test, target.depth.map_or(DepthFormat::Z24S8, |depth| depth.format));
@@ -124,11 +130,16 @@ fn figures(words: &mut Words, draw: &Draw) {
     words.set(class::SET_LINE_SMOOTH_ENABLE, 0);
     words.set(class::SET_POLY_SMOOTH_ENABLE, 0);
     words.set(class::SET_LINE_WIDTH, draw.lines.width.into());
-    // LIN-2: the first bit makes lines rectangles.
-    words.set(
-        class::SET_ANTI_ALIASING_CONTROL,
-        0xffff_0000 | u32::from(draw.lines.rasterization == LineRasterization::Rectangular),
-    );
+    // LIN-2: the first bit makes lines rectangles. Celsius has no such bit.
+    let modes = [draw.polygon_modes.front, draw.polygon_modes.back];
+    let lines = matches!(draw.topology, Topology::Lines | Topology::LineStrip | Topology::LineLoop);
+    let lines = lines || draw.topology.has_faces() && modes.contains(&PolygonMode::Line);
+    let rectangles = u32::from(draw.lines.rasterization == LineRasterization::Rectangular);
+    match words.family {
+        Family::Kelvin => words.set(class::SET_ANTI_ALIASING_CONTROL, 0xffff_0000 | rectangles),
+        Family::Celsius if lines => words.set(class::SET_ANTI_ALIASING_CONTROL, rectangles),
+        Family::Celsius => {}
+    }
     words.set(class::SET_POINT_SIZE, draw.point_size.into());
     words.set(class::SET_POINT_SMOOTH_ENABLE, draw.point_sprite.into());
     words.set(class::SET_POINT_PARAMS_ENABLE, draw.point_sizes.is_some().into());
@@ -147,7 +158,8 @@ fn fog(words: &mut Words, fog: &Fog) -> Result<(), ExportError> {
     let Some(function) = fog.function else {
         return refuse("factors of fog that the vertices give have no word: give the fog a `mode`");
     };
-    if function.per_vertex {
+    // NV10 knows no other than the first for linear fog, NV2A no other than the second.
+    if words.family == Family::Kelvin && function.per_vertex {
         return refuse("linear fog that is evaluated at vertices has no word: take `evaluation: PerPixel`");
     }
     words.set(class::SET_FOG_MODE, code(&FOG_MODES, function.mode));

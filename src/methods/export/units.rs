@@ -2,22 +2,23 @@
 
 use ninebit::plan::texture_size;
 use ninebit::state::{
-    ColorKeyMode, Draw, Filter, Profile, Scene, ShaderOperation, ShadowReference, TEXTURE_UNITS, Texture, TextureImage,
-    TextureKind, TextureUnit,
+    ColorKeyMode, Draw, Filter, Scene, ShaderOperation, ShadowReference, Texture, TextureImage, TextureKind,
+    TextureUnit,
 };
 use ninebit_program::registers::{color_word, encode};
 
 use super::memory::{MemoryMap, pitch};
 use super::state::code;
 use super::{ExportError, Words, refuse};
-use crate::class;
-use crate::draw::shader::{CUBE, DOT_MAPPINGS, THREE, TWO};
-use crate::draw::texture::{ADDRESS_MODES, FORMATS, MIN_FILTERS, SHADOW_FUNCTIONS, of_unit};
+use crate::celsius;
+use crate::class::{self, Family, STAGE_CUBE, STAGE_THREE, STAGE_TWO, of_unit};
+use crate::draw::shader::DOT_MAPPINGS;
+use crate::draw::texture::{ADDRESS_MODES, FORMATS, MIN_FILTERS, SHADOW_FUNCTIONS};
 
 /// Sets the units, the shader and the combiners of a draw.
 pub(super) fn units(words: &mut Words, scene: &Scene, placed: &MemoryMap, draw: &Draw) -> Result<(), ExportError> {
     let (mut programs, mut mappings, mut inputs, mut culls) = (0, 0, 0, 0);
-    for index in 0..TEXTURE_UNITS {
+    for index in 0..scene.profile.texture_units() {
         let stage = &draw.texture_shader[index];
         let unit = draw.textures[index].as_ref().filter(|_| stage.operation.samples());
         words.set(of_unit(class::SET_TEXTURE_CONTROL0, index), unit.map_or(0, control));
@@ -37,14 +38,23 @@ pub(super) fn units(words: &mut Words, scene: &Scene, placed: &MemoryMap, draw: 
             culls |= bits << (4 * index);
         }
     }
+    if words.family == Family::Celsius {
+        // What samples and how is said by the units.
+        combiners(words, scene, draw);
+        return Ok(());
+    }
     words.set(class::SET_SHADER_STAGE_PROGRAM, programs);
     words.set(class::SET_DOT_RGBMAPPING, mappings);
     words.set(class::SET_SHADER_OTHER_STAGE_INPUT, inputs);
     words.set(class::SET_SHADER_CLIP_PLANE_MODE, culls);
-    for (word, index, value) in encode(&draw.combiners, Profile::Nv2a).all() {
-        words.set(word.method(Profile::Nv2a) + 4 * index as u32, value);
-    }
+    combiners(words, scene, draw);
     Ok(())
+}
+
+fn combiners(words: &mut Words, scene: &Scene, draw: &Draw) {
+    for (word, index, value) in encode(&draw.combiners, scene.profile).all() {
+        words.own(word.method(scene.profile) + 4 * index as u32, value);
+    }
 }
 
 /// Returns the code of an operation, and sets its words.
@@ -59,10 +69,10 @@ fn operation(
         Op::None => 0,
         Op::Sample => match kind {
             None => 0,
-            Some((TextureKind::Cube, _)) => CUBE,
-            Some((TextureKind::ThreeDimensional, _)) => THREE,
-            Some((_, Some(shadow))) if shadow.reference == ShadowReference::R => THREE,
-            _ => TWO,
+            Some((TextureKind::Cube, _)) => STAGE_CUBE,
+            Some((TextureKind::ThreeDimensional, _)) => STAGE_THREE,
+            Some((_, Some(shadow))) if shadow.reference == ShadowReference::R => STAGE_THREE,
+            _ => STAGE_TWO,
         },
         Op::PassThrough => 4,
         Op::CullFragment { .. } => 5,
@@ -113,10 +123,11 @@ fn unit(
     (index, unit): (usize, &TextureUnit),
 ) -> Result<(), ExportError> {
     let texture = &scene.textures[unit.texture];
+    let celsius = words.family == Family::Celsius;
     let mut set = |method, word| words.set(of_unit(method, index), word);
     let linear = texture.kind == TextureKind::Rectangle;
     set(class::SET_TEXTURE_OFFSET, placed.textures[unit.texture]);
-    set(class::SET_TEXTURE_FORMAT, format(scene, texture, unit.texture)?);
+    let format = format(scene, texture, unit.texture)?;
     if linear {
         let (width, height) = texture_size(scene, unit.texture);
         let pitch = match texture.image.target() {
@@ -135,12 +146,23 @@ fn unit(
     }
     let [s, t, r] = [unit.address_s, unit.address_t, unit.address_r].map(|mode| code(&ADDRESS_MODES, mode));
     let [wrap_s, wrap_t] = unit.cylindrical_wrap.map(u32::from);
-    set(class::SET_TEXTURE_ADDRESS, s | wrap_s << 4 | t << 8 | wrap_t << 12 | r << 16);
+    let address = s | wrap_s << 4 | t << 8 | wrap_t << 12 | r << 16;
+    if celsius {
+        let Some(word) = celsius::texture_format(format, address) else {
+            return refuse(format!("texture `{}` has a format that GeForce 256 does not have", texture.name));
+        };
+        set(class::SET_TEXTURE_FORMAT, word);
+    } else {
+        set(class::SET_TEXTURE_FORMAT, format);
+        set(class::SET_TEXTURE_ADDRESS, address);
+    }
     let signs: u32 = [29, 30, 31, 28].into_iter().zip(unit.signed).map(|(bit, signed)| u32::from(signed) << bit).sum();
     let min = code(&MIN_FILTERS, (unit.min_filter, unit.mip_filter));
     let mag = if unit.mag_filter == Filter::Linear { 2 } else { 1 };
     set(class::SET_TEXTURE_FILTER, signs | mag << 24 | min << 16 | 1 << 13 | unit.lod_bias as u32 & 0x1fff);
-    set(class::SET_TEXTURE_BORDER_COLOR, color_word(unit.border_color));
+    if !celsius || unit.border_color != [0; 4] {
+        set(class::SET_TEXTURE_BORDER_COLOR, color_word(unit.border_color));
+    }
     if let Some(palette) = unit.palette {
         let length = match scene.palettes[palette].entries.len() {
             256 => 0,

@@ -22,8 +22,8 @@ pub(super) enum Line {
     Unknown,
 }
 
-/// Reads a line without its end.
-pub(super) fn line(text: &str) -> Line {
+/// Reads a line without its end, which is of `class` if it names none.
+pub(super) fn line(text: &str, class: u32) -> Line {
     let text = without_prefix(text);
     if text.is_empty() || text.starts_with('#') || text.starts_with("==") {
         return Line::Nothing;
@@ -53,7 +53,7 @@ pub(super) fn line(text: &str) -> Line {
         return Line::Nothing;
     }
     if let Some((_, rest)) = text.split_once("execute_command:") {
-        return bochs(rest).unwrap_or(Line::Unknown);
+        return bochs(rest, class).unwrap_or(Line::Unknown);
     }
     slot(text).or_else(|| words(text)).unwrap_or(Line::Unknown)
 }
@@ -173,13 +173,13 @@ fn combiner(rest: &str) -> Option<Line> {
 }
 
 /// Reads what follows Bochs' `execute_command:`; its methods count words.
-fn bochs(rest: &str) -> Option<Line> {
+fn bochs(rest: &str, class: u32) -> Option<Line> {
     let field = |name: &str| {
         let mut fields = rest.split(',').map(str::trim);
         fields.find_map(|field| number(field.strip_prefix(name)?.trim_start()))
     };
     let method = field("method")?.checked_mul(4)?;
-    Some(Line::Write(Write { class: field("class").unwrap_or(KELVIN) & 0xffff, method, word: field("param")? }))
+    Some(Line::Write(Write { class: field("class").unwrap_or(class) & 0xffff, method, word: field("param")? }))
 }
 
 /// Reads a slot of a vertex program: `/* Slot 3: 0x... 0x... 0x... 0x... */`, or four words in brackets.

@@ -9,8 +9,10 @@ use crate::class::{KELVIN, METHOD_BYTES};
 pub const LONGEST_LINE: usize = 16 << 10;
 
 /// Reads a log part by part, in memory that does not grow with it.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Reader {
+    /// The class of lines that name none.
+    class: u32,
     line: u64,
     partial: Vec<u8>,
     cut: bool,
@@ -32,10 +34,30 @@ enum Form {
     Stream(Words),
 }
 
+impl Default for Reader {
+    fn default() -> Reader {
+        Reader::of_class(KELVIN)
+    }
+}
+
 impl Reader {
-    /// Makes a reader at the beginning of a log.
+    /// Makes a reader at the beginning of a log, whose lines are of Kelvin unless they say otherwise.
     pub fn new() -> Reader {
         Reader::default()
+    }
+
+    /// Makes a reader of a log whose lines are of a class unless they say otherwise.
+    pub fn of_class(class: u32) -> Reader {
+        Reader {
+            class,
+            line: 0,
+            partial: Vec::new(),
+            cut: false,
+            last: None,
+            form: None,
+            unknown: 0,
+            first_unknown: None,
+        }
     }
 
     /// Reads more bytes, and passes each event that they complete.
@@ -72,14 +94,14 @@ impl Reader {
         self.line += 1;
         let partial = std::mem::take(&mut self.partial);
         let text = String::from_utf8_lossy(&partial);
-        let found = if std::mem::take(&mut self.cut) { Line::Unknown } else { line(text.trim()) };
+        let found = if std::mem::take(&mut self.cut) { Line::Unknown } else { line(text.trim(), self.class) };
         self.pass(found, &text, each);
         self.partial = partial;
         self.partial.clear();
     }
 
     fn pass(&mut self, found: Line, text: &str, each: &mut dyn FnMut(Entry)) {
-        let line = self.line;
+        let (line, class) = (self.line, self.class);
         let mut put = |event| each(Entry { line, event });
         match found {
             Line::Nothing => {}
@@ -99,12 +121,12 @@ impl Reader {
             Line::Words(words) => {
                 let form = self.form.get_or_insert_with(|| {
                     let pairs = words.len() == 2 && words[0] < METHOD_BYTES && words[0] % 4 == 0;
-                    if pairs { Form::Pairs } else { Form::Stream(Words::default()) }
+                    if pairs { Form::Pairs } else { Form::Stream(Words::of_class(class)) }
                 });
                 match form {
                     Form::Pairs => match words[..] {
                         [method, word] if method < METHOD_BYTES => {
-                            put(Event::Write(Write { class: KELVIN, method, word }));
+                            put(Event::Write(Write { class, method, word }));
                         }
                         _ => self.note(text),
                     },

@@ -1,7 +1,7 @@
 //! Words of a push buffer: headers and what follows them.
 
 use super::event::{Event, Fault, Write};
-use crate::class::KELVIN;
+use crate::class::{Family, KELVIN};
 
 /// Decodes words one by one. Without memory it cannot follow jumps.
 #[derive(Clone, Copy, Debug)]
@@ -10,12 +10,14 @@ pub struct Words {
     subchannel: usize,
     left: u32,
     increasing: bool,
+    /// The 3D class that the words are of.
+    class: u32,
     classes: [u32; 8],
 }
 
 impl Default for Words {
     fn default() -> Words {
-        Words { method: 0, subchannel: 0, left: 0, increasing: true, classes: [KELVIN; 8] }
+        Words::of_class(KELVIN)
     }
 }
 
@@ -63,6 +65,11 @@ pub(crate) fn header(word: u32) -> Header {
 }
 
 impl Words {
+    /// Makes a decoder of words for a 3D class.
+    pub fn of_class(class: u32) -> Words {
+        Words { method: 0, subchannel: 0, left: 0, increasing: true, class, classes: [class; 8] }
+    }
+
     /// Returns whether the next word is a header.
     pub fn is_between(&self) -> bool {
         self.left == 0
@@ -75,11 +82,12 @@ impl Words {
 
     /// Takes a word within a command, and returns the write that it is.
     pub fn data(&mut self, word: u32) -> Write {
-        let write = Write { class: self.classes[self.subchannel], method: self.method, word };
-        if write.method == 0 {
+        if self.method == 0 {
             // The object's class is in the low bits where a driver names objects by their class; any other handle leaves the 3D class.
-            self.classes[self.subchannel] = if word & 0xff == KELVIN || word > 0xff { KELVIN } else { word };
+            let named = if Family::of(word & 0xff).is_some() { word & 0xff } else { word };
+            self.classes[self.subchannel] = if named > 0xff { self.class } else { named };
         }
+        let write = Write { class: self.classes[self.subchannel], method: self.method, word };
         self.left -= 1;
         if self.increasing {
             self.method = (self.method + 4) & 0x1ffc;

@@ -22,6 +22,7 @@ use ninebit_methods::log::Reader;
 use ninebit_methods::memory::{Layout, bytes};
 use ninebit_methods::pgraph::DUMP_BYTES;
 use ninebit_methods::state::State;
+use ninebit_methods::vertex::microcode::{SLOTS, passthrough};
 
 const SIDES: [u32; 2] = [20, 12];
 
@@ -193,4 +194,23 @@ fn registers_and_constants_complete_the_state() {
     assert_eq!(summary.complete, 2, "{:#?}", frames.iter().map(|frame| &frame.drawn).collect::<Vec<_>>());
     assert_eq!(frames[1].scene.draws[0].blend, scene.draws[1].blend);
     assert_eq!(drawn(&frames[1]).words, surface_after(&scene, 2).words);
+}
+
+/// The vertex program lies in the dump from the last word of a slot to the first.
+#[test]
+fn a_dumped_program_stands_for_the_log_s() {
+    let (folder, scene) = (tempfile::tempdir().unwrap(), scene());
+    play(folder.path(), &scene);
+    let log = String::from_utf8(read(&folder.path().join(LOG_FILE))).unwrap();
+    let lines: Vec<&str> = log.lines().filter(|line| !line.contains("SET_TRANSFORM_PROGRAM[")).collect();
+    fs::write(folder.path().join(LOG_FILE), lines.join("\n")).unwrap();
+    assert_eq!(import(folder.path(), Part::EachDraw).1.complete, 0);
+    let mut slots = passthrough();
+    slots.resize(SLOTS, [0; 4]);
+    let bytes: Vec<u8> =
+        slots.iter().flat_map(|[a, b, c, d]| [d, c, b, a]).flat_map(|word| word.to_le_bytes()).collect();
+    fs::write(folder.path().join("0000000001_0_RDI_Shader.bin"), bytes).unwrap();
+    let (frames, summary) = import(folder.path(), Part::EachDraw);
+    assert_eq!(summary.complete, 3, "{:#?}", frames.iter().map(|frame| &frame.drawn).collect::<Vec<_>>());
+    assert_eq!(drawn(&frames[2]).words, surface_after(&scene, 3).words);
 }

@@ -5,7 +5,7 @@
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::random::Random;
 use ninebit::state::*;
-use ninebit_methods::class;
+use ninebit_methods::class::Family;
 use ninebit_methods::export::{Methods, export, push_buffer, trace};
 use ninebit_methods::frame::Frame;
 use ninebit_methods::import::{Importer, Options, Sources, import};
@@ -17,16 +17,17 @@ fn setting(name: &str, otherwise: u64) -> u64 {
     std::env::var(name).ok().map_or(otherwise, |text| text.parse().unwrap())
 }
 
-/// Returns methods of a scene with a texture, a palette, depths and stencil, in two draws.
-fn methods() -> Methods {
+/// Returns methods of a scene of a chip with a texture, a palette if it has any, depths and stencil, in two draws.
+fn methods(profile: Profile) -> Methods {
     let words = (0..16).collect::<Vec<u32>>();
     let palette = Palette { name: "palette".into(), entries: (0..32).map(|n| n * 0x0808_0808).collect() };
-    let texture = Texture::from_words(TextureFormat::P8, [4, 4], words);
+    let format = if profile == Profile::Nv10 { TextureFormat::A8R8G8B8 } else { TextureFormat::P8 };
+    let texture = Texture::from_words(format, [4, 4], words);
     let target = Target {
         depth: Some(DepthBuffer { format: DepthFormat::Z24S8, clear: 0xff_ffff, clear_stencil: 0 }),
         ..Target::new(16, 16, SurfaceFormat::A8R8G8B8)
     };
-    let unit = TextureUnit { palette: Some(0), ..TextureUnit::new(0) };
+    let unit = TextureUnit { palette: (format == TextureFormat::P8).then_some(0), ..TextureUnit::new(0) };
     let first = Draw {
         name: "first".into(),
         depth_test: Some(DepthTest::new(CompareFunction::Less, true)),
@@ -37,12 +38,14 @@ fn methods() -> Methods {
         }),
         ..Draw::rectangle(12.0, 12.0).texture(0, unit)
     };
-    let second = Draw { name: "second".into(), topology: Topology::LineStrip, ..Draw::rectangle(8.0, 15.0) };
+    // The other lines have a bit that the class of nv10 lacks.
+    let lines = Lines { rasterization: LineRasterization::Bresenham, ..Lines::default() };
+    let second = Draw { name: "second".into(), topology: Topology::LineStrip, lines, ..Draw::rectangle(8.0, 15.0) };
     let scene = Scene {
-        profile: Profile::Nv2a,
+        profile,
         targets: vec![target],
         textures: vec![texture],
-        palettes: vec![palette],
+        palettes: if format == TextureFormat::P8 { vec![palette] } else { vec![] },
         draws: vec![first, second],
     };
     let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
@@ -72,8 +75,12 @@ fn damage(random: &mut Random, bytes: &mut Vec<u8>) {
             }
             _ => {
                 // A word that a program may send, anywhere.
-                let method = class::methods()[random.below(class::methods().len() as u128) as usize].number;
-                let line = format!("\n0x{method:x} 0x{:x}\n", random.below(1 << 32) as u32 >> random.below(32));
+                let family = if random.below(4) == 0 { Family::Celsius } else { Family::Kelvin };
+                let methods = family.methods();
+                let method = methods[random.below(methods.len() as u128) as usize].number;
+                let word = random.below(1 << 32) as u32 >> random.below(32);
+                let class = family.class();
+                let line = format!("\nnv2a_pgraph_method 0: 0x{class:x} -> 0x{method:04x} 0x{word:x}\n");
                 bytes.splice(at..at, line.bytes());
             }
         }
@@ -89,12 +96,13 @@ fn check(frame: &Frame) {
 
 #[test]
 fn damaged_logs_do_no_harm() {
-    let methods = methods();
-    let (log, words) = (trace(&methods).into_bytes(), push_buffer(&methods));
+    let of_chips = [methods(Profile::Nv2a), methods(Profile::Nv10)];
     let mut random = Random::seeded(setting("NINEBIT_LOGS_SEED", 70));
     let (mut stated, count) = (0, setting("NINEBIT_LOGS", 400));
+    let logs = of_chips.each_ref().map(|methods| trace(methods).into_bytes());
     for number in 0..count {
-        let mut bytes = log.clone();
+        let chip = usize::from(number % 4 == 3);
+        let (mut bytes, methods) = (logs[chip].clone(), &of_chips[chip]);
         damage(&mut random, &mut bytes);
         let memory = Memory::new(methods.memory[..random.below(methods.memory.len() as u128) as usize].to_vec());
         let options = Options { surfaces_in_memory: number % 2 == 0, ..Options::default() };
@@ -103,8 +111,9 @@ fn damaged_logs_do_no_harm() {
         stated += frames.iter().map(|frame| frame.scene.draws.len()).sum::<usize>();
     }
     assert!(stated as u64 > count / 2, "{stated} draws of {count} logs");
-    for _ in 0..count / 4 {
-        let mut bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+    for number in 0..count / 4 {
+        let methods = &of_chips[usize::from(number % 4 == 3)];
+        let mut bytes: Vec<u8> = push_buffer(methods).iter().flat_map(|word| word.to_le_bytes()).collect();
         damage(&mut random, &mut bytes);
         // Words that lead back make a circle, whose end takes seconds.
         let straight = bytes.chunks_exact(4).all(|word| word[0] & 3 == 0 && word[3] >> 5 != 1);
@@ -115,7 +124,7 @@ fn damaged_logs_do_no_harm() {
         let mut each = |frame: Frame| check(&frame);
         let sources = Sources { memory: memory.clone(), ..Sources::default() };
         let mut importer = Importer::new(State::default(), sources, Options::default(), &mut each);
-        let _ = follow(&memory, 0, memory.len() as u64, &mut |entry| importer.take(&entry));
+        let _ = follow(&memory, (0, memory.len() as u64), methods.family.class(), &mut |entry| importer.take(&entry));
         importer.finish(None);
     }
 }

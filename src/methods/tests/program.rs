@@ -8,7 +8,7 @@ use ninebit::engine::{RenderOptions, render};
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::*;
 use ninebit::vertex::fog;
-use ninebit_methods::class;
+use ninebit_methods::class::{self, Family};
 use ninebit_methods::import::{Options, Part, import};
 use ninebit_methods::memory::{Layout, Memory, bytes};
 use ninebit_methods::state::State;
@@ -29,7 +29,7 @@ struct Program {
 
 impl Program {
     fn send(&mut self, method: u32, word: u32) {
-        let label = class::find(method).map_or("?", |place| place.method.name);
+        let label = Family::Kelvin.find(method).map_or("?", |place| place.method.name);
         writeln!(self.log, "4711@17.000001:nv2a_pgraph_method 0: 0x97 -> 0x{method:04x} NV097_{label}[0] 0x{word:x}")
             .unwrap();
     }

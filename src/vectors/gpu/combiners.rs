@@ -163,26 +163,45 @@ impl Program {
         Placement { path: Path::Combiners, needs, state, draws, sources: self.sources }
     }
 
-    /// Returns the lines of a stage: the portions that write, and the constants that are not 0.
     fn stage_lines(&self, n: usize, stage: &GeneralStage) -> Vec<String> {
-        let idle = |portion: &Portion| {
-            [portion.ab_output, portion.cd_output, portion.sum_output].iter().all(|r| *r == Register::Zero)
-        };
-        let mut lines = Vec::new();
-        for (name, portion) in [("RGB", &stage.rgb), ("ALPHA", &stage.alpha)] {
-            if !idle(portion) {
-                lines.push(portion_line(n, name, portion));
-            }
-        }
-        for (constant, color) in stage.constants.iter().enumerate().filter(|(_, color)| **color != [0; 4]) {
-            let [r, g, b, a] = color;
-            lines.push(match self.profile {
-                Profile::Nv10 => format!("constant {constant} {r} {g} {b} {a}"),
-                Profile::Nv2a => format!("stage_constant {n} {constant} {r} {g} {b} {a}"),
-            });
-        }
-        lines
+        stage_lines(self.profile, n, stage)
     }
+}
+
+/// Returns the lines of whole combiners.
+pub(super) fn program_lines(profile: Profile, combiners: &Combiners) -> Vec<String> {
+    let Combiners { stages, final_combiner, .. } = combiners;
+    let mut lines = vec![format!("combiners {}", stages.len())];
+    lines.extend(stages.iter().enumerate().flat_map(|(n, stage)| stage_lines(profile, n, stage)));
+    if profile == Profile::Nv2a {
+        // Those of the final combiner alone, as stages have their own.
+        for (n, [r, g, b, a]) in final_combiner.constants.iter().enumerate() {
+            lines.push(format!("constant {n} {r} {g} {b} {a}"));
+        }
+    }
+    lines.extend(final_lines(final_combiner));
+    lines
+}
+
+/// Returns the lines of a stage: the portions that write, and the constants that are not 0.
+fn stage_lines(profile: Profile, n: usize, stage: &GeneralStage) -> Vec<String> {
+    let idle = |portion: &Portion| {
+        [portion.ab_output, portion.cd_output, portion.sum_output].iter().all(|r| *r == Register::Zero)
+    };
+    let mut lines = Vec::new();
+    for (name, portion) in [("RGB", &stage.rgb), ("ALPHA", &stage.alpha)] {
+        if !idle(portion) {
+            lines.push(portion_line(n, name, portion));
+        }
+    }
+    for (constant, color) in stage.constants.iter().enumerate().filter(|(_, color)| **color != [0; 4]) {
+        let [r, g, b, a] = color;
+        lines.push(match profile {
+            Profile::Nv10 => format!("constant {constant} {r} {g} {b} {a}"),
+            Profile::Nv2a => format!("stage_constant {n} {constant} {r} {g} {b} {a}"),
+        });
+    }
+    lines
 }
 
 /// Returns a stage that writes a register times -1, or that minus one, to SPARE0. It does not depend on whether the negated mapping of -256 saturates

@@ -11,6 +11,7 @@ mod buffers;
 mod combiners;
 mod environment;
 mod fixed;
+pub mod scene;
 mod stages;
 pub mod write;
 

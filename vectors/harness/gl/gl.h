@@ -21,6 +21,7 @@ typedef unsigned char GLboolean;
 #define GL_NONE 0
 #define GL_ZERO 0
 #define GL_ONE 1
+#define GL_TRIANGLES 0x0004
 #define GL_QUADS 0x0007
 #define GL_COLOR_BUFFER_BIT 0x4000
 #define GL_ALWAYS 0x0207
@@ -38,6 +39,7 @@ typedef unsigned char GLboolean;
 #define GL_FOG_COORDINATE 0x8451
 #define GL_ALPHA_TEST 0x0BC0
 #define GL_DITHER 0x0BD0
+#define GL_SCISSOR_TEST 0x0C11
 #define GL_BLEND 0x0BE2
 #define GL_UNPACK_SWAP_BYTES 0x0CF0
 #define GL_UNPACK_ALIGNMENT 0x0CF5

@@ -25,6 +25,8 @@ GL_CALLED(StencilOp, (GLenum fail, GLenum zfail, GLenum zpass), ("StencilOp %x %
 GL_CALLED(StencilMask, (GLuint mask), ("StencilMask %x", mask), "glStencilMask")
 GL_CALLED(DepthFunc, (GLenum function), ("DepthFunc %x", function), "glDepthFunc")
 GL_CALLED(AlphaFunc, (GLenum function, GLfloat reference), ("AlphaFunc %x %g", function, reference), "glAlphaFunc")
+GL_CALLED(Scissor, (GLint x, GLint y, GLsizei w, GLsizei h), ("Scissor %d %d %d %d", x, y, w, h), "glScissor")
+GL_CALLED(ColorMask, (GLboolean r, GLboolean g, GLboolean b, GLboolean a), ("ColorMask %d %d %d %d", r, g, b, a), "glColorMask")
 GL_CALLED(BlendFunc, (GLenum source, GLenum destination), ("BlendFunc %x %x", source, destination), "glBlendFunc")
 GL_CALLED(Fogfv, (GLenum name, const GLfloat *v), ("Fogfv %x %g %g %g %g", name, v[0], v[1], v[2], v[3]), "glFogfv")
 GL_CALLED(GenTextures, (GLsizei n, GLuint *names), ("GenTextures %d", n); names[0] = 1, "glGenTextures")

@@ -1,12 +1,14 @@
-/* Draws the GPU batches of a pack and writes what it read back.
+/* Draws the GPU batches and the scenes of a pack and writes what it read back.
  *
- *     ninebit-gl PACK RESULTS [UNIT...]
+ *     ninebit-gl PACK RESULTS [UNIT|SCENE...]
  *
- * RESULTS is a folder that exists. See README.md.
+ * RESULTS is a folder that exists; RESULTS/answers.zip holds all that was written. See README.md.
  */
 #include "batch.h"
 #include "draw.h"
 #include "gl.h"
+#include "picture.h"
+#include "scene.h"
 #include "surface.h"
 
 #include <stdio.h>
@@ -14,19 +16,18 @@
 #include <string.h>
 
 #define PATH_LENGTH 1024
+#define FILES 200
 
-/* CRC-32 as in PNG, over everything before the last line of a file. */
-static unsigned long crc_of(unsigned long crc, const char *text)
+/* The names of the files that were written, for the archive. */
+static char files[FILES][80];
+static int file_count;
+
+static void note(const char *name, const char *extension)
 {
-    for (; *text; text++) {
-        int bit;
-        crc ^= (unsigned char)*text;
-        for (bit = 0; bit < 8; bit++) crc = (crc >> 1) ^ (crc & 1 ? 0xedb88320UL : 0);
-    }
-    return crc;
+    if (file_count < FILES) sprintf(files[file_count++], "%.60s%.8s", name, extension);
 }
 
-/* A file whose checksum is counted along. */
+/* A file whose checksum, of everything before its last line, is counted along. */
 typedef struct output {
     FILE *file;
     unsigned long crc;
@@ -34,7 +35,7 @@ typedef struct output {
 
 static void put(output *out, const char *text)
 {
-    out->crc = crc_of(out->crc, text);
+    out->crc = crc_bytes(out->crc, (const unsigned char *)text, strlen(text));
     fputs(text, out->file);
 }
 
@@ -229,6 +230,7 @@ static int run_unit(const char *pack, const char *folder, const char *unit)
         batch_close(&file);
         return 0;
     }
+    gl.Viewport(0, 0, BATCH_WIDTH, BATCH_WIDTH);
     ok = write_unit(&file, &out, unit);
     batch_close(&file);
     ok &= !ferror(out.file);
@@ -239,29 +241,82 @@ static int run_unit(const char *pack, const char *folder, const char *unit)
         remove(part);
         return 0;
     }
+    note(unit, ".tsv");
     return 1;
 }
 
-/* Every unit of the manifest that has batches. */
+/* Names in a text that stand between two words, each at most 60 characters. */
+static int names_between(const char *text, const char *before, const char *after, char (*names)[64], int most)
+{
+    const char *at = text;
+    int count = 0;
+    while (at && (at = strstr(at, before)) != NULL && count < most) {
+        size_t length;
+        at += strlen(before);
+        length = strcspn(at, ".\"\n");
+        if (length >= 60 || strncmp(at + length, after, strlen(after)) != 0) continue;
+        memcpy(names[count], at, length);
+        names[count++][length] = '\0';
+    }
+    return count;
+}
+
+static int draw_scene(const char *pack, const char *folder, const char *name)
+{
+    char message[256];
+    enum scene_status status;
+    message[0] = '\0';
+    status = scene_draw(pack, folder, name, message);
+    if (status == SCENE_DRAWN) {
+        note(name, ".png");
+        printf("%s drawn\n", name);
+    } else if (status == SCENE_UNSUPPORTED) {
+        printf("%s left out for want of %s\n", name, message);
+    } else {
+        printf("%s failed\n", name);
+        fprintf(stderr, "%s.scene.txt: %s\n", name, message);
+    }
+    fflush(stdout);
+    return status != SCENE_FAILED;
+}
+
+/* Whether the pack has a scene of this name. */
+static int is_scene(const char *pack, const char *name)
+{
+    char path[PATH_LENGTH];
+    FILE *file;
+    sprintf(path, "%.900s/scenes/%.60s.scene.txt", pack, name);
+    file = fopen(path, "rb");
+    return file && fclose(file) == 0;
+}
+
+/* Every unit of the manifest that has batches, and every scene that is listed beside it. */
 static int run_all(const char *pack, const char *folder)
 {
-    char path[PATH_LENGTH], unit[64];
-    char *text, *at;
+    static char units[FILES / 2][64], scenes[FILES / 2][64];
+    char path[PATH_LENGTH];
+    char *manifest, *list;
     size_t length;
-    int ok = 1, found = 0;
+    int ok = 1, unit_count, scene_count, n;
     sprintf(path, "%.900s/MANIFEST.json", pack);
-    text = read_file(path, &length);
-    for (at = text; at && (at = strstr(at, "\"units/")) != NULL; at += 7) {
-        size_t name = strcspn(at + 7, ".\"");
-        if (strncmp(at + 7 + name, ".gpu.txt\"", 9) != 0 || name >= sizeof unit) continue;
-        memcpy(unit, at + 7, name);
-        unit[name] = '\0';
-        found = 1;
-        ok &= run_unit(pack, folder, unit);
+    manifest = read_file(path, &length);
+    sprintf(path, "%.900s/scenes/scenes.txt", pack);
+    list = read_file(path, &length);
+    unit_count = names_between(manifest, "\"units/", ".gpu.txt\"", units, FILES / 2);
+    scene_count = list ? names_between(list, "scene ", "\n", scenes, FILES / 2) : 0;
+    free(manifest);
+    free(list);
+    for (n = 0; n < scene_count; n++) {
+        printf("[%d/%d] ", n + 1, scene_count + unit_count);
+        ok &= draw_scene(pack, folder, scenes[n]);
     }
-    free(text);
-    if (!found) fprintf(stderr, "%s: the pack has no batches; export it with --gpu-batches\n", pack);
-    return ok && found;
+    for (n = 0; n < unit_count; n++) {
+        printf("[%d/%d] ", scene_count + n + 1, scene_count + unit_count);
+        fflush(stdout);
+        ok &= run_unit(pack, folder, units[n]);
+    }
+    if (unit_count + scene_count == 0) fprintf(stderr, "%s: the pack has no batches; export it with --gpu-batches\n", pack);
+    return ok && unit_count + scene_count > 0;
 }
 
 int main(int count, char **arguments)
@@ -269,19 +324,26 @@ int main(int count, char **arguments)
     char root[65];
     int ok, n;
     if (count < 3) {
-        fprintf(stderr, "usage: ninebit-gl PACK RESULTS [UNIT...]\n");
+        fprintf(stderr, "usage: ninebit-gl PACK RESULTS [UNIT|SCENE...]\n");
         return 2;
     }
     if (!find_root(arguments[1], root)) return 4;
-    if (!surface_open(BATCH_WIDTH, BATCH_WIDTH) || !gl_load()) return 6;
+    if (!surface_open(SURFACE_WIDTH, SURFACE_HEIGHT) || !gl_load()) return 6;
     if (integer(GL_RED_BITS) != 8 || integer(GL_GREEN_BITS) != 8 || integer(GL_BLUE_BITS) != 8 || integer(GL_ALPHA_BITS) != 8) {
         fprintf(stderr, "the surface has not 8 bits a channel: its bytes would tell nothing\n");
         return 6;
     }
-    gl.Viewport(0, 0, BATCH_WIDTH, BATCH_WIDTH);
     ok = write_device(arguments[2], root);
+    note("device", ".json");
     if (ok && count == 3) ok = run_all(arguments[1], arguments[2]);
-    for (n = 3; ok && n < count; n++) ok = run_unit(arguments[1], arguments[2], arguments[n]);
+    for (n = 3; ok && n < count; n++) {
+        if (is_scene(arguments[1], arguments[n])) ok = draw_scene(arguments[1], arguments[2], arguments[n]);
+        else ok = run_unit(arguments[1], arguments[2], arguments[n]);
+    }
+    if (file_count > 1) {
+        if (archive_write(arguments[2], "answers.zip", files, file_count)) printf("%s/answers.zip holds all %d files\n", arguments[2], file_count);
+        else fprintf(stderr, "%s/answers.zip was not written\n", arguments[2]);
+    }
     surface_close();
     return ok ? 0 : 7;
 }

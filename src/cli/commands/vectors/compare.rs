@@ -32,7 +32,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (manifest, tables) = pack::open(&arguments.pack)?;
     let results = results::open(&arguments.results, &manifest)?;
     let comparison = compare::compare(&tables, &results, &waivers, arguments.rows)?;
+    let answers = scenes::compare(&arguments.pack, &arguments.results)?;
     let json = || {
+        let answers: Vec<_> = answers
+            .iter()
+            .map(|answer| json!({ "scene": answer.scene, "reading": answer.reading, "differing": answer.differing }))
+            .collect();
         let value = json!({
             "format": "ninebit-comparison-1",
             "pack": manifest.root,
@@ -41,11 +46,25 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             "behaviour_rev": manifest.behaviour_rev,
             "device": results.device,
             "comparison": comparison,
+            "scenes": answers,
         });
         format!("{value:#}")
     };
-    arguments.format.print(|| text(&manifest, &results.device, &comparison), json)?;
-    if comparison.is_clean() { Ok(()) } else { Err(Failure::difference()) }
+    arguments.format.print(|| text(&manifest, &results.device, &comparison) + &scenes_text(&answers), json)?;
+    if comparison.is_clean() && answers.iter().all(|answer| answer.differing == 0) {
+        Ok(())
+    } else {
+        Err(Failure::difference())
+    }
+}
+
+fn scenes_text(answers: &[scenes::Answer]) -> String {
+    let mut text = String::new();
+    for scenes::Answer { scene, reading, differing } in answers {
+        let count = if *differing > 0 { format!(", {differing} pixels differ") } else { String::new() };
+        let _ = writeln!(text, "{scene:<24}{reading}{count}");
+    }
+    if text.is_empty() { text } else { format!("\nscenes\n{text}") }
 }
 
 fn text(manifest: &Manifest, device: &Device, comparison: &Comparison) -> String {

@@ -34,6 +34,9 @@ pub(crate) struct Arguments {
     /// Also write draws for a graphics card, for the program in vectors/harness/gl: the view `gpu`
     #[arg(long)]
     gpu_batches: bool,
+    /// Also write the scenes of this folder as draws for a graphics card, with the picture of each reading: vectors/scenes/deciding
+    #[arg(long, value_name = "DIR")]
+    scenes: Option<PathBuf>,
 }
 
 /// Writes a pack.
@@ -62,6 +65,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             0 => writeln!(text),
             rows => writeln!(text, ", {rows} left out: at most {BATCHES} batches"),
         };
+    }
+    if let Some(folder) = &arguments.scenes {
+        text.push_str(&scenes::export(&arguments.output, folder, profile)?);
     }
     let _ = writeln!(text, "root {}", manifest.root);
     Ok(write_text(&text)?)

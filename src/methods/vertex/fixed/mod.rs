@@ -23,6 +23,7 @@ use ninebit::vertex::{EyeVertex, ModelView, ObjectVertex, Rows, Viewer};
 /// The state of the fixed-function pipe, as a log set it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FixedFunction {
+    chip: Profile,
     /// From object space to clip space, or from eye space where vertices have weights.
     composite: Rows,
     /// The matrices to eye space, none if nothing needs them.
@@ -179,7 +180,7 @@ impl FixedFunction {
             viewer: if self.viewer_is_far { Viewer::FAR } else { Viewer::Infinite(sight) },
         };
         let given = [0, 1, 2, 3].map(|set| inputs[attribute::TEXTURE + set]);
-        [0, 1, 2, 3].map(|set| self.sets[set].at(&vertex, &given, Profile::Nv2a))
+        [0, 1, 2, 3].map(|set| self.sets[set].at(&vertex, &given, self.chip))
     }
 
     fn fog(&self, eye: &Eye, inputs: &Attributes) -> f32 {

@@ -2,6 +2,7 @@
 
 use super::light::{ColorSource, Light, Lighting, Side, Sources, Spot};
 use super::{FixedFunction, Fog, Skin, Specular};
+use ninebit::state::Profile;
 use ninebit::vertex::Rows;
 use ninebit::vertex::point::PointParameters;
 use ninebit::vertex::texgen::{CoordinateSet, Generator};
@@ -95,7 +96,7 @@ struct Needs {
 impl FixedFunction {
     /// Reads the state. `get` returns the word that the log set last, or `None` if it never set that method. Only the words
     /// that the enabled state needs are asked for; those of a texture coordinate set only if its stage has a program.
-    pub fn read(get: &mut dyn FnMut(u32) -> Option<u32>) -> FixedFunction {
+    pub fn read(chip: Profile, get: &mut dyn FnMut(u32) -> Option<u32>) -> FixedFunction {
         let mut words = Words { get, missing: Vec::new(), unknown: Vec::new() };
         let mut needs = Needs::default();
         let composite = words.rows(COMPOSITE_MATRIX);
@@ -121,6 +122,7 @@ impl FixedFunction {
         missing.sort_unstable();
         missing.dedup();
         FixedFunction {
+            chip,
             composite,
             model_view,
             normal,

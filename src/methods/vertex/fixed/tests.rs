@@ -32,7 +32,7 @@ impl Log {
     }
 
     fn read(&self) -> FixedFunction {
-        FixedFunction::read(&mut |method| self.0.get(&method).copied())
+        FixedFunction::read(Profile::Nv2a, &mut |method| self.0.get(&method).copied())
     }
 
     /// Runs the pipe, which must lack nothing.
@@ -108,12 +108,12 @@ fn missing_words_are_named() {
         change(&mut log);
         log.read().missing
     };
-    assert_eq!(FixedFunction::read(&mut |_| None).missing, {
+    assert_eq!(FixedFunction::read(Profile::Nv2a, &mut |_| None).missing, {
         let mut all: Vec<u32> = vec![0x02a4, 0x0314, 0x0318, 0x0328, 0x03b8];
         all.extend(words(0x03c0, 16).chain(words(0x0420, 4)).chain(words(0x0680, 16)).chain(words(0x0a20, 4)));
         all
     });
-    assert_eq!(of(|log| log.word(0x02a4, 1).word(0x02a0, 6)), []);
+    assert_eq!(of(|log| log.word(0x02a4, 1).word(0x02a0, 6)), Vec::<u32>::new());
     assert_eq!(of(|log| log.word(0x02a4, 1)), [0x02a0]);
     let planar: Vec<u32> = words(0x0480, 16).chain(words(0x09d0, 4)).collect();
     assert_eq!(of(|log| log.word(0x02a4, 1).word(0x02a0, 2)), planar);
@@ -363,7 +363,7 @@ fn any_words_are_harmless() {
         let mut log = Log(words);
         let inputs = std::array::from_fn(|_| random.words().map(f32::from_bits));
         let complete = log.read();
-        assert_eq!(complete.missing, []);
+        assert_eq!(complete.missing, Vec::<u32>::new());
         complete.run(&inputs);
         let gone = 4 * random.below(0x800);
         log.0.remove(&gone);
