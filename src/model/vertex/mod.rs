@@ -7,6 +7,7 @@
 #![allow(clippy::float_arithmetic, reason = "the vertex side is f32 by rule; set-up quantises afterwards")]
 
 pub mod fog;
+pub mod light;
 pub mod point;
 pub mod shader;
 pub mod texgen;

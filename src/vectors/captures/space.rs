@@ -15,7 +15,7 @@ const COTANGENT: f32 = 2.414_213_4;
 pub(super) const DISTANCE: f64 = 7.0;
 
 /// Returns a row vector times a matrix in single precision, as the programs compute it: products are added from left to right.
-fn in_single(vector: [f32; 4], matrix: &Matrix) -> [f32; 4] {
+pub(super) fn in_single(vector: [f32; 4], matrix: &Matrix) -> [f32; 4] {
     let term = |row: usize, column: usize| vector[row] * matrix[row][column] as f32;
     std::array::from_fn(|column| (1..4).fold(term(0, column), |sum, row| sum + term(row, column)))
 }
@@ -48,6 +48,12 @@ pub(super) fn unproject([x, y]: [f32; 2], z: f32, inverse: &Matrix) -> [f32; 4] 
     let t = (z - near[2]) / (far[2] - near[2]);
     let [x, y] = [0, 1].map(|k| near[k] + (far[k] - near[k]) * t);
     [x, y, z, 1.0]
+}
+
+/// Returns the point of the world that programs find for a place in the window.
+pub(super) fn unproject_depth(place: [f32; 4], inverse: &Matrix) -> [f32; 4] {
+    let [x, y, z, w] = in_single(place, inverse);
+    [x / w, y / w, z / w, 1.0]
 }
 
 /// Returns the rows of a matrix for column vectors.
