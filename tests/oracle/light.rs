@@ -2,7 +2,33 @@
 
 use super::fog::{self, light as word};
 use super::real::{Number, bits, shift};
-use ninebit::vertex::light::{ColorSource, Light, Lighting, Side, Sources};
+
+/// Where a colour of the material comes from.
+#[derive(Clone, Copy, Debug)]
+pub enum Source {
+    Material,
+    Diffuse,
+    Specular,
+}
+
+/// A light: far away, or at a place, with the words of its cone if it has one (axis, offset, falloff).
+#[derive(Clone, Copy, Debug)]
+pub enum Light {
+    Far { direction: [f32; 3], half: [f32; 3] },
+    Near { position: [f32; 3], attenuation: [f32; 3], range: f32, cone: Option<([f32; 3], f32, [f32; 3])> },
+}
+
+/// Red of a material, and of the ambient, diffuse and specular colour of each light.
+#[derive(Clone, Debug)]
+pub struct Material {
+    /// Emission, ambient, diffuse, specular.
+    pub sources: [Source; 4],
+    pub scene: f32,
+    pub factor: f32,
+    pub powers: [f32; 6],
+    pub lights: Vec<(Light, [f32; 3])>,
+    pub local_eye: bool,
+}
 
 const ZERO: Number = Number::ZERO;
 const ONE: Number = Number { m: 1, e: 0 };
@@ -98,20 +124,23 @@ fn direction(v: [Number; 3]) -> ([Number; 3], Number, Number) {
     (v.map(|c| TRANSFORM.product(c, root)), TRANSFORM.product(square, root), square)
 }
 
-/// (x + a) / (x b + c), with y in place of 1 beside a and c; 0 below a numerator of 0.
-fn bent(x: Number, y: Number, [a, b, c]: [Number; 3]) -> Number {
+/// (x + a y) by 1/(x b + c y), times a factor before the reciprocal; 0 below a numerator of 0.
+fn bent(x: Number, y: Number, [a, b, c]: [Number; 3], factor: Number) -> Number {
     let (scaled, over) = (SINGLE.product(y, a), SINGLE.product(y, c));
     let numerator = SINGLE.sum(&[x, scaled]);
     let divisor = SINGLE.sum(&[SINGLE.product(x, b), over]);
-    if is_negative(numerator) { ZERO } else { SINGLE.product(numerator, reciprocal(divisor)) }
+    if is_negative(numerator) {
+        return ZERO;
+    }
+    SINGLE.product(SINGLE.product(numerator, factor), reciprocal(divisor))
 }
 
 /// Returns the shares of ambient, diffuse and specular light.
-fn shares(lighting: &Lighting, light: &Light, powers: [f32; 6], point: [f32; 3], normal: [f32; 3]) -> [Number; 3] {
+fn shares(material: &Material, light: &Light, point: [f32; 3], normal: [f32; 3]) -> [Number; 3] {
     let normal = words(normal);
     let (to_light, attenuation) = match *light {
-        Light::Infinite { direction, .. } => (words(direction), ONE),
-        Light::Local { position, attenuation, range, spot } => {
+        Light::Far { direction, .. } => (words(direction), ONE),
+        Light::Near { position, attenuation, range, cone } => {
             let (p, q) = (three(position), three(point));
             let (to_light, length, square) = direction([0, 1, 2].map(|k| TRANSFORM.sum(&[p[k], -q[k]])));
             let (length, square) = (to_word(length), to_word(square));
@@ -119,12 +148,12 @@ fn shares(lighting: &Lighting, light: &Light, powers: [f32; 6], point: [f32; 3],
                 return [ZERO; 3];
             }
             let mut share = reciprocal(VECTORS.dot(words(attenuation), [ONE, length, square]));
-            if let Some(spot) = spot {
-                let axis = three(spot.direction);
+            if let Some((axis, offset, falloff)) = cone {
+                let axis = three(axis);
                 let [x, y, z] = [0, 1, 2].map(|k| TRANSFORM.product(to_light[k], axis[k]));
-                let x = TRANSFORM.sum(&[x, y, z, Number::of(spot.offset)]);
-                let through = if is_negative(x) { ZERO } else { bent(to_word(x), ONE, words(spot.falloff)) };
-                share = VECTORS.product(share, through);
+                let x = TRANSFORM.sum(&[x, y, z, Number::of(offset)]);
+                let x = if x.real() > 1.0 { ONE } else { to_word(x) };
+                share = if is_negative(x) { ZERO } else { bent(x, ONE, words(falloff), share) };
             }
             (to_light.map(to_word), share)
         }
@@ -133,47 +162,48 @@ fn shares(lighting: &Lighting, light: &Light, powers: [f32; 6], point: [f32; 3],
     if is_negative(facing) {
         return [attenuation, ZERO, ZERO];
     }
-    let [a, b, c, d, e, f] = powers.map(|p| to_word(Number::of(p)));
-    let highlight = match *light {
-        Light::Infinite { half, .. } if !lighting.local_eye => bent(VECTORS.dot(normal, words(half)), ONE, [a, b, c]),
+    let [a, b, c, d, e, f] = material.powers.map(|p| to_word(Number::of(p)));
+    let specular = match *light {
+        Light::Far { half, .. } if !material.local_eye => {
+            bent(VECTORS.dot(normal, words(half)), ONE, [a, b, c], attenuation)
+        }
         _ => {
-            let eye = if lighting.local_eye {
+            let eye = if material.local_eye {
                 direction(three(point).map(|c| -c)).0.map(to_word)
             } else {
-                words(lighting.eye_direction)
+                words([0.0, 0.0, -1.0])
             };
             let half = [0, 1, 2].map(|k| VECTORS.sum(&[eye[k], to_light[k]]));
             let along = VECTORS.dot(normal, half);
             if is_negative(along) {
                 ZERO
             } else {
-                bent(SINGLE.product(along, along), VECTORS.dot(half, half), [d, e, f])
+                bent(SINGLE.product(along, along), VECTORS.dot(half, half), [d, e, f], attenuation)
             }
         }
     };
-    [attenuation, VECTORS.product(attenuation, facing), VECTORS.product(attenuation, highlight)]
+    [attenuation, VECTORS.product(attenuation, facing), specular]
 }
 
-/// Returns red of the primary and the secondary colour of the front, before their limits, with the eye at the origin. `given` are the vertex's.
-pub fn red(lighting: &Lighting, is_separate: bool, point: [f32; 3], normal: [f32; 3], given: [f32; 2]) -> [Number; 2] {
-    let Side { sources: Sources { emission, ambient, diffuse, specular }, factor, powers, .. } = &lighting.front;
-    let of = |source: &ColorSource| match source {
-        ColorSource::Material => None,
-        ColorSource::Diffuse => Some(to_word(Number::of(given[0]))),
-        ColorSource::Specular => Some(to_word(Number::of(given[1]))),
-    };
-    let (scene, factor) = (to_word(Number::of(lighting.front.ambient[0])), to_word(Number::of(factor[0])));
-    let mut primary = match (of(emission), of(ambient)) {
+/// Returns red of the primary and the secondary colour before their limits. A local eye stands at the origin. `given` are the vertex's.
+pub fn red(material: &Material, is_separate: bool, point: [f32; 3], normal: [f32; 3], given: [f32; 2]) -> [Number; 2] {
+    let [emission, ambient, diffuse, specular] = material.sources.map(|source| match source {
+        Source::Material => None,
+        Source::Diffuse => Some(to_word(Number::of(given[0]))),
+        Source::Specular => Some(to_word(Number::of(given[1]))),
+    });
+    let [scene, factor] = [material.scene, material.factor].map(|number| to_word(Number::of(number)));
+    let mut primary = match (emission, ambient) {
         (None, None) => scene,
         (Some(own), None) | (None, Some(own)) => VECTORS.sum(&[VECTORS.product(own, factor), scene]),
         (Some(emission), Some(own)) => VECTORS.sum(&[VECTORS.product(own, factor), emission]),
     };
     let mut secondary = ZERO;
-    for (light, colors) in lighting.lights.iter().zip(&lighting.front.colors) {
-        let shares = shares(lighting, light, *powers, point, normal);
+    for (light, colors) in &material.lights {
+        let shares = shares(material, light, point, normal);
         for (n, source) in [ambient, diffuse, specular].into_iter().enumerate() {
-            let light = VECTORS.product(shares[n], to_word(Number::of(colors[n][0])));
-            let light = of(source).map_or(light, |own| VECTORS.product(light, own));
+            let light = VECTORS.product(shares[n], to_word(Number::of(colors[n])));
+            let light = source.map_or(light, |own| VECTORS.product(light, own));
             let total = if n == 2 && is_separate { &mut secondary } else { &mut primary };
             *total = VECTORS.sum(&[*total, light]);
         }

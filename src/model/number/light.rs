@@ -149,6 +149,8 @@ fn is_nan(word: u32) -> bool {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::float_arithmetic, reason = "compares with floats")]
+
     use super::*;
 
     #[test]
@@ -182,6 +184,28 @@ mod tests {
         assert_eq!((first, sum([c0, first, 0])), (0xbe01_4400, 0x3faf_d400));
         let second = product(c1, word(3.0_f32.to_bits()));
         assert_eq!((second, f32::from_bits(sum([c0, second, 0]))), (0xbbdd_9800, 12232.0 / 8192.0));
+    }
+
+    /// The seeds are floors: those to nearest would give 1/1.0859375 another bit.
+    #[test]
+    fn reciprocals_and_single_numbers() {
+        let one = ONE;
+        assert_eq!([reciprocal(one), reciprocal(one | SIGN)], [0x3f7f_f800, 0xbf7f_f800]);
+        assert_eq!([reciprocal(0), reciprocal(NAN), reciprocal(INFINITY)], [INFINITY, NAN, 0]);
+        assert_eq!(reciprocal(0x3f8a_8800), 0x3f6c_8000);
+        for fraction in 0..1 << FRACTION_BITS {
+            let x = one | fraction << 10;
+            let error = f64::from(f32::from_bits(reciprocal(x))) * f64::from(f32::from_bits(x)) - 1.0;
+            assert!((-1.0 / 1024.0..=0.0).contains(&error), "{x:08x} {error}");
+        }
+        // 2^-14 lies below the last bit of 1; a vector's sum keeps it, until it is cut.
+        let tiny = (127 - 14) << 23;
+        assert_eq!([single_sum(one, tiny), single_sum(one, tiny | SIGN)], [one, one]);
+        assert_eq!(sum([one, tiny | SIGN]), 0x3f7f_fc00);
+        assert_eq!(single_product(LARGEST_FINITE, LARGEST_FINITE | SIGN), INFINITY | SIGN);
+        assert_eq!([single_product(0, INFINITY), single_product(one | SIGN, INFINITY)], [0, INFINITY | SIGN]);
+        assert_eq!([single_product(NAN, 0), single_sum(NAN, one)], [NAN; 2]);
+        assert_eq!(dot([one; 3], [one, one, one | SIGN]), one);
     }
 
     #[test]

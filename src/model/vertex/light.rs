@@ -9,7 +9,7 @@
 //! specular     attenuation f(x), 0 if n l or f's numerator is negative
 //! f(x)         (x + A) / (x B + C), which Direct3D fits to x^power; x is n h of a far light and a far eye,
 //!              else (x + D) / (x E + F) of x = (n h)^2 / h^2 with h = l + eye, for half the power
-//! cone         the same function of s l + s' with the words of the falloff, 0 if s l + s' is negative
+//! cone         the same function of s l + s', at most 1, with the words of the falloff, 0 if s l + s' is negative
 //! ```
 //!
 //! Distances and directions are the transform unit's (VTX-5), all else is in words of [`light`].
@@ -152,7 +152,11 @@ pub struct Surface {
 impl Surface {
     /// Returns the place of a vertex, given its position in eye space and the eye's.
     pub fn new([x, y, z, w]: [u32; 4], normal: [u32; 3], eye: [f32; 3]) -> Surface {
-        let point = if transform::is_zero(w) { [x, y, z] } else { [x, y, z].map(|c| transform::product(c, transform::reciprocal(w))) };
+        let point = if transform::is_zero(w) {
+            [x, y, z]
+        } else {
+            [x, y, z].map(|c| transform::product(c, transform::reciprocal(w)))
+        };
         Surface { point, normal, to_eye: each(words(eye), point, difference) }
     }
 }
@@ -196,19 +200,26 @@ fn with_alpha(color: [u32; 3], alpha: f32) -> [f32; 4] {
     [r, g, b, alpha]
 }
 
-/// Returns (x + a) / (x b + c), or 0 where the numerator is negative.
-fn bent(x: u32, [a, b, c]: [u32; 3]) -> u32 {
-    let numerator = single_sum(x, a);
-    let divisor = single_sum(single_product(x, b), c);
-    if is_negative(numerator) { 0 } else { single_product(numerator, reciprocal(divisor)) }
+/// Returns a numerator times a factor by the reciprocal of a divisor, or 0 where the numerator is negative.
+fn quotient(numerator: u32, factor: u32, divisor: u32) -> u32 {
+    if is_negative(numerator) {
+        return 0;
+    }
+    single_product(single_product(numerator, factor), reciprocal(divisor))
+}
+
+/// Returns the factor times (x + a) / (x b + c).
+fn bent(x: u32, [a, b, c]: [u32; 3], factor: u32) -> u32 {
+    quotient(single_sum(x, a), factor, single_sum(single_product(x, b), c))
 }
 
 impl Spot {
-    /// Returns the share that the cone lets through in the direction to the light.
-    fn share(&self, to_light: [u32; 3]) -> u32 {
+    /// Returns what of an attenuation the cone lets through in the direction to the light.
+    fn through(&self, to_light: [u32; 3], attenuation: u32) -> u32 {
         let [x, y, z] = each(to_light, words(self.direction), transform::product);
         let x = transform::sum([x, y, z, self.offset.to_bits()]);
-        if is_negative(x) { 0 } else { bent(word(x), converted(self.falloff)) }
+        // No number is more than the middle of the cone, and NaN is no less.
+        if is_negative(x) { 0 } else { bent(word(x).min(ONE), converted(self.falloff), attenuation) }
     }
 }
 
@@ -287,8 +298,8 @@ impl Lighting {
                 let [distance, square] = [length, unit::dot(v, v)].map(word);
                 let reaches = !is_negative(single_sum(word(range.to_bits()), distance ^ SIGN));
                 let attenuation = reaches.then(|| {
-                    let through = reciprocal(dot(converted(attenuation), [ONE, distance, square]));
-                    spot.map_or(through, |spot| product(through, spot.share(to_light)))
+                    let attenuation = reciprocal(dot(converted(attenuation), [ONE, distance, square]));
+                    spot.map_or(attenuation, |spot| spot.through(to_light, attenuation))
                 });
                 (to_light.map(word), attenuation)
             }
@@ -299,29 +310,35 @@ impl Lighting {
         if is_negative(facing) {
             return Shares { ambient: attenuation, diffuse: 0, specular: 0 };
         }
-        let highlight = self.highlight(light, side, surface, normal, to_light);
-        Shares {
-            ambient: attenuation,
-            diffuse: product(attenuation, facing),
-            specular: product(attenuation, highlight),
-        }
+        let [a, b, c, d, e, f] = converted(side.powers);
+        let specular = match *light {
+            Light::Infinite { half, .. } if !self.local_eye => {
+                bent(dot(normal, converted(half)), [a, b, c], attenuation)
+            }
+            _ => self.highlight([d, e, f], surface, normal, to_light, attenuation),
+        };
+        Shares { ambient: attenuation, diffuse: product(attenuation, facing), specular }
     }
 
-    fn highlight(&self, light: &Light, side: &Side, surface: &Surface, normal: [u32; 3], to_light: [u32; 3]) -> u32 {
-        let [a, b, c, d, e, f] = converted(side.powers);
-        if let (Light::Infinite { half, .. }, false) = (*light, self.local_eye) {
-            return bent(dot(normal, converted(half)), [a, b, c]);
-        }
-        let eye = if self.local_eye { unit::direction(surface.to_eye).0.map(word) } else { converted(self.eye_direction) };
+    /// Returns the factor times (x + d) / (x e + f) of the square x of the product of the normal and the half vector.
+    fn highlight(
+        &self,
+        [d, e, f]: [u32; 3],
+        surface: &Surface,
+        normal: [u32; 3],
+        to_light: [u32; 3],
+        factor: u32,
+    ) -> u32 {
+        let eye =
+            if self.local_eye { unit::direction(surface.to_eye).0.map(word) } else { converted(self.eye_direction) };
         let half = each(eye, to_light, add);
         let (square, along) = (dot(half, half), dot(normal, half));
         if is_negative(along) {
             return 0;
         }
         let x = single_product(along, along);
-        let numerator = single_sum(x, single_product(square, d));
         let divisor = single_sum(single_product(x, e), single_product(square, f));
-        if is_negative(numerator) { 0 } else { single_product(numerator, reciprocal(divisor)) }
+        quotient(single_sum(x, single_product(square, d)), factor, divisor)
     }
 }
 

@@ -1,6 +1,7 @@
 //! VTX-6: vertices that the fixed function lights, in the world of the programs.
 
 use super::meshes::Place;
+use super::primitives::limited;
 use super::space::{DISTANCE, Matrix};
 use super::*;
 pub(super) use ninebit::vertex::light::{ColorSource, Light, SecondaryColor, Shading, Side, Sources, Spot};
@@ -58,7 +59,13 @@ pub(super) fn point(position: [f32; 3], range: f32, attenuation: [f32; 3]) -> Li
 }
 
 /// Returns a spotlight at a point of the world that shines ahead, with the angles of its outer and inner cone in degrees.
-pub(super) fn spotlight(position: [f32; 3], range: f32, attenuation: [f32; 3], angles: [f32; 2], falloff: [f32; 3]) -> Light {
+pub(super) fn spotlight(
+    position: [f32; 3],
+    range: f32,
+    attenuation: [f32; 3],
+    angles: [f32; 2],
+    falloff: [f32; 3],
+) -> Light {
     let cosine = |degrees: f32| (f64::from(0.5 * (degrees * (std::f32::consts::PI / 180.0)))).cos() as f32;
     let [outer, inner] = angles.map(cosine);
     let scale = -1.0 / (inner - outer);
@@ -110,7 +117,7 @@ pub(super) fn lit(given: &Given, shading: &Shading, seen: Seen) -> Vertex {
         // Backs that nothing lights are black.
         Seen::Back => back.unwrap_or([[0.0, 0.0, 0.0, 1.0]; 2]),
     };
-    let [diffuse, specular] = colors.map(VertexColor::Floats);
+    let [diffuse, specular] = colors.map(|color| VertexColor::Floats(color.map(limited)));
     Vertex { position: space::flat(given.position), diffuse, specular, ..Vertex::default() }
 }
 
@@ -123,7 +130,12 @@ pub(super) fn drawn(
     combiners: &Combiners,
 ) -> Draw {
     let vertices = given.map(|given| lit(&given, shading, seen)).collect();
-    Draw { combiners: combiners.clone(), cull: Cull::Back, front_face: FrontFace::Clockwise, ..draw(topology, vertices) }
+    Draw {
+        combiners: combiners.clone(),
+        cull: Cull::Back,
+        front_face: FrontFace::Clockwise,
+        ..draw(topology, vertices)
+    }
 }
 
 /// Returns the vertices of a mesh of two colours.
@@ -157,7 +169,8 @@ pub(super) fn summed(primary: bool, secondary: bool) -> Combiners {
 
 /// Draws the chequered background at depth 1 of the world: two colours, A8B8G8R8, in fields of `size` texels.
 pub(super) fn background(canvas: &mut Canvas, colors: [u32; 2], size: u32) {
-    let texture = canvas.texture(&images::texture(TextureFormat::A8B8G8R8, [256, 256], checker(colors.map(abgr), size)));
+    let texture =
+        canvas.texture(&images::texture(TextureFormat::A8B8G8R8, [256, 256], checker(colors.map(abgr), size)));
     let world = unprojected_corners([0.0, 0.0, 640.0, 480.0], 1.0, &inverse());
     let vertices = world.into_iter().zip(corners(WHOLE)).map(|(at, texel)| placed(space::flat(at), texel));
     let draw = fetching(draw(Topology::Quads, vertices.collect()), 0, nearest(texture));

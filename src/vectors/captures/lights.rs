@@ -23,7 +23,9 @@ pub(super) fn controls(frames: &mut Frames) {
         (directional(normalized([1.0, 0.0, 1.0])), colors),
         (point([1.5, 1.0, -2.5], 4.0, [0.025, 0.15, 0.02]), colors),
     ];
-    for word in [0, SEPARATE, LOCAL_EYE, LOCAL_EYE | SEPARATE].into_iter().flat_map(|word| [word, word | ALPHA_OF_VERTEX]) {
+    for word in
+        [0, SEPARATE, LOCAL_EYE, LOCAL_EYE | SEPARATE].into_iter().flat_map(|word| [word, word | ALPHA_OF_VERTEX])
+    {
         let both = shading(&lamps, material(DIM, 0.4, POWER_OF_GAME), word);
         for (suffix, shading) in [("", both.clone()), ("NoSpec", without_secondary(&both))] {
             frames.paint(format!("FF_0x{word:06X}{suffix}"), 0xff23_2623, move |canvas| {
@@ -152,8 +154,7 @@ fn cones() -> Vec<Cone> {
         [0.05, 0.0, 0.25],
         [0.05, 0.05, 0.05],
     ];
-    let by_attenuation =
-        attenuations.map(|a| (format!("AtFixed_{}", a.map(number).join("_")), angles, a, square));
+    let by_attenuation = attenuations.map(|a| (format!("AtFixed_{}", a.map(number).join("_")), angles, a, square));
     by_falloff.into_iter().chain(by_angles).chain(by_attenuation).collect()
 }
 
@@ -169,7 +170,7 @@ pub(super) fn spotlights(frames: &mut Frames) {
             for places in [meshes::grid(), meshes::cylinder()] {
                 let given = [[1.0, 0.0, 1.0, 1.0], [0.0, 0.4, 0.0, 0.25]];
                 let given = of_mesh(&places, given);
-                    canvas.draw(drawn(Topology::Triangles, given, &shading, Seen::Front, &summed(true, true)));
+                canvas.draw(drawn(Topology::Triangles, given, &shading, Seen::Front, &summed(true, true)));
             }
         });
     }

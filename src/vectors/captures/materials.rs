@@ -14,15 +14,8 @@ const BEHIND: Light = Light::Infinite { direction: [0.0, 0.0, 1.0], half: [0.0; 
 /// Colours of Material_color_source: of the vertices, and of the legend.
 const VERTEX_DIFFUSE: [f32; 4] = [0.1, 0.4, 0.1, 0.25];
 const VERTEX_SPECULAR: [f32; 4] = [0.4, 0.1, 0.1, 0.25];
-const LEGEND: [[f32; 3]; 7] = [
-    [0.1, 0.4, 0.1],
-    [0.4, 0.1, 0.1],
-    [0.2; 3],
-    [0.0, 0.4, 0.0],
-    [0.4, 0.0, 0.0],
-    [0.0, 0.0, 0.4],
-    [0.1; 3],
-];
+const LEGEND: [[f32; 3]; 7] =
+    [[0.1, 0.4, 0.1], [0.4, 0.1, 0.1], [0.2; 3], [0.0, 0.4, 0.0], [0.4, 0.0, 0.0], [0.0, 0.0, 0.4], [0.1; 3]];
 
 /// Draws a quad of the world for a rectangle of the screen, at depth 0 of the world.
 fn quad(edges: [f32; 4], diffuse: [f32; 4], shading: &Shading, combiners: &Combiners) -> Draw {

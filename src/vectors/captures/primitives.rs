@@ -223,7 +223,7 @@ fn product(a: f32, b: f32) -> f32 {
 }
 
 /// Returns the colour of a float as a scene may have it: a positive NaN is all of a colour, a negative one nothing.
-fn limited(value: f32) -> f32 {
+pub(super) fn limited(value: f32) -> f32 {
     if value.is_nan() { f32::from(u8::from(value.is_sign_positive())) } else { value.clamp(-8.0, 8.0) }
 }
 

@@ -36,7 +36,14 @@ const POWERS: [(&str, [f32; 6]); 11] = [
 ];
 
 /// Draws four rows of four quads: secondary and primary colours, first with no secondary colours enabled, and four words of the light control.
-fn rows(canvas: &mut Canvas, world: impl Fn([f32; 4]) -> [[f32; 4]; 4], seen: Seen, normals: [[f32; 3]; 4], colors: [[[f32; 4]; 2]; 4], shading: impl Fn(u32) -> Shading) {
+fn rows(
+    canvas: &mut Canvas,
+    world: impl Fn([f32; 4]) -> [[f32; 4]; 4],
+    seen: Seen,
+    normals: [[f32; 3]; 4],
+    colors: [[[f32; 4]; 2]; 4],
+    shading: impl Fn(u32) -> Shading,
+) {
     let (width, height) = (640.0_f32 / 6.0, 480.0_f32 / 6.0);
     let mut top = height + 15.0;
     for (enabled, register) in [
@@ -50,7 +57,8 @@ fn rows(canvas: &mut Canvas, world: impl Fn([f32; 4]) -> [[f32; 4]; 4], seen: Se
             let shading = shading(word);
             let shading = if enabled { shading } else { without_secondary(&shading) };
             let given = world([left, top, left + width, top + height]).into_iter().zip(normals).zip(colors);
-            let given = given.map(|((position, normal), [diffuse, specular])| Given { position, normal, diffuse, specular });
+            let given =
+                given.map(|((position, normal), [diffuse, specular])| Given { position, normal, diffuse, specular });
             let combiners = Combiners::showing(register);
             canvas.draw(drawn(Topology::Quads, given, &shading, seen, &combiners));
             left += width + 15.0;

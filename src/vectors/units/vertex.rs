@@ -146,8 +146,8 @@ impl Unit for LightShare {
 /// Returns a row of [`LightShare`] as programs have it.
 fn share(kind: i64, local_eye: i64) -> Vec<i64> {
     let numbers: [f32; 29] = [
-        0.5, -0.25, 7.0, 0.1, 0.2, -0.95, 1.5, 1.0, 4.5, 0.38, 0.0, -0.92, 0.025, 0.15, 0.02, 0.0, 0.0, -3.3, -0.17, -0.86, 1.69,
-        4.0, -2.0, -0.8, -2.78, 2.98, -0.65, -2.36, 2.71,
+        0.5, -0.25, 7.0, 0.1, 0.2, -0.95, 1.5, 1.0, 4.5, 0.38, 0.0, -0.92, 0.025, 0.15, 0.02, 0.0, 0.0, -3.3, -0.17,
+        -0.86, 1.69, 4.0, -2.0, -0.8, -2.78, 2.98, -0.65, -2.36, 2.71,
     ];
     let place: [f32; 3] = if kind == 0 { [-0.7, 0.0, -0.7] } else { [1.5, 1.0, 4.5] };
     let mut row: Vec<i64> = [kind, local_eye].into_iter().chain(numbers.map(|n| i64::from(n.to_bits()))).collect();
@@ -168,7 +168,7 @@ impl Unit for LightColor {
         takes [
             ["cfg.emission", "cfg.ambient", "cfg.diffuse", "cfg.specular"].map(|name| Column::names(name, SOURCES)),
             [Column::flag("cfg.secondary"), Column::flag("cfg.separate")],
-            words(["in.scene", "in.factor", "in.normal", "in.diffuse", "in.specular"]),
+            words(["in.scene", "in.factor", "in.normal", "in.vertex.diffuse", "in.vertex.specular"]),
             words(["in.light.ambient", "in.light.diffuse", "in.light.specular"]),
         ];
         gives [Column::results(["out.primary", "out.secondary"], Kind::Hex(32))]
@@ -182,7 +182,8 @@ impl Unit for LightColor {
     }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
-        let source = |n: usize| [ColorSource::Material, ColorSource::Diffuse, ColorSource::Specular][inputs[n] as usize % 3];
+        let source =
+            |n: usize| [ColorSource::Material, ColorSource::Diffuse, ColorSource::Specular][inputs[n] as usize % 3];
         let sources = Sources { emission: source(0), ambient: source(1), diffuse: source(2), specular: source(3) };
         let [scene, factor, normal, diffuse, specular] = [6, 7, 8, 9, 10].map(|n| float(inputs[n]));
         let light = Light::Infinite { direction: [0.0, 0.0, 1.0], half: [0.0; 3] };
@@ -195,8 +196,7 @@ impl Unit for LightColor {
             powers: [1.0, 0.0, 1.0, 0.0, 0.0, 0.0],
             colors: vec![[11, 12, 13].map(|n| [float(inputs[n]); 3])],
         };
-        let lighting =
-            Lighting { lights: vec![light], front, back: None, local_eye: false, eye_direction: [0.0; 3] };
+        let lighting = Lighting { lights: vec![light], front, back: None, local_eye: false, eye_direction: [0.0; 3] };
         let secondary = SecondaryColor { enabled: inputs[4] != 0, separate: inputs[5] != 0, keeps_alpha: true };
         let surface = Surface { point: [0; 3], normal: [0, 0, normal.to_bits()], to_eye: [0; 3] };
         let shading = Shading { lighting: Some(lighting), secondary };

@@ -119,12 +119,7 @@ impl FixedFunction {
         let normal = if self.normalizes { unit::direction([x, y, z]).0 } else { [x, y, z] };
         let surface = Surface::new(position, normal, self.eye);
         let real = |v: [u32; 3]| v.map(f32::from_bits);
-        Eye {
-            position: position.map(f32::from_bits),
-            normal: real(normal),
-            to_eye: real(surface.to_eye),
-            surface,
-        }
+        Eye { position: position.map(f32::from_bits), normal: real(normal), to_eye: real(surface.to_eye), surface }
     }
 
     /// Returns the sum of M v with the weight of each matrix M, or the product with the only one.

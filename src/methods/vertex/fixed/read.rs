@@ -199,8 +199,7 @@ fn generator(words: &mut Words<'_>, set: u32, component: u32) -> Option<Generato
 fn shading(words: &mut Words<'_>, needs: &mut Needs) -> Shading {
     let enabled = words.flag(SPECULAR_ENABLE);
     let control = if enabled { words.word(LIGHT_CONTROL) } else { 0 };
-    let secondary =
-        SecondaryColor { enabled, separate: control & 1 != 0, keeps_alpha: control >> 17 & 1 != 0 };
+    let secondary = SecondaryColor { enabled, separate: control & 1 != 0, keeps_alpha: control >> 17 & 1 != 0 };
     let lighting = words.flag(LIGHTING_ENABLE).then(|| lighting(words, needs));
     Shading { lighting, secondary }
 }
