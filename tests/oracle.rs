@@ -10,11 +10,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use ninebit::engine::{RenderOptions, render, trace};
 use ninebit::frame::Surface;
 use ninebit::plan::{Plan, PlanOptions};
+use ninebit::random::Random;
 use ninebit::state::{
     AddressMode, CompareFunction, DotMapping, Filter, FogFunction, FogMode, Named, POLICIES, Policies, Profile, Scene,
     ShadowReference, TextureFormat, TextureKind,
 };
 use ninebit::vertex::fog::passed;
+use ninebit::vertex::light::{
+    ColorSource, Light, Lighting, SecondaryColor, Shading, Side, Sources, Spot, Surface as LitSurface,
+};
 use ninebit_report::trace_text;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
@@ -220,3 +224,95 @@ proptest! {
 /// The names of all operations of the texture shader.
 const OPERATIONS: &str = "None Sample PassThrough CullFragment BumpEnvironment DependentAlphaRed DependentGreenBlue \
     DotProduct DotProduct2D DotProductCube DotReflectDiffuse DotReflectSpecular DotReflectConstantEye";
+
+/// A number that is a multiple of 2^-20 from -2 to 2, which may be few bits long.
+fn small(random: &mut Random) -> f32 {
+    let bits = random.bits();
+    let short = (bits >> 40) as u32 % 20;
+    ((bits as i32 >> 10) >> short << short) as f32 / 2.0_f32.powi(20)
+}
+
+/// Returns a light for the model.
+fn light(light: &model::light::Light) -> Light {
+    match *light {
+        model::light::Light::Far { direction, half } => Light::Infinite { direction, half },
+        model::light::Light::Near { position, attenuation, range, cone } => {
+            let spot = cone.map(|(direction, offset, falloff)| Spot { falloff, direction, offset });
+            Light::Local { position, attenuation, range, spot }
+        }
+    }
+}
+
+/// Returns the state of the model that lights by a material of the oracle.
+fn shading(material: &model::light::Material, separate: bool) -> Shading {
+    let [emission, ambient, diffuse, specular] = material.sources.map(|source| match source {
+        model::light::Source::Material => ColorSource::Material,
+        model::light::Source::Diffuse => ColorSource::Diffuse,
+        model::light::Source::Specular => ColorSource::Specular,
+    });
+    let front = Side {
+        sources: Sources { emission, ambient, diffuse, specular },
+        ambient: [material.scene; 3],
+        factor: [material.factor; 3],
+        alpha: 1.0,
+        powers: material.powers,
+        colors: material.lights.iter().map(|(_, colors)| colors.map(|red| [red; 3])).collect(),
+    };
+    let lighting = Lighting {
+        lights: material.lights.iter().map(|(one, _)| light(one)).collect(),
+        front,
+        back: None,
+        local_eye: material.local_eye,
+        eye_direction: [0.0, 0.0, -1.0],
+    };
+    let secondary = SecondaryColor { enabled: true, separate, keeps_alpha: true };
+    Shading { lighting: Some(lighting), secondary }
+}
+
+/// Lights of every kind, with all sources of colours, on random vertices (VTX-5, VTX-6).
+#[test]
+fn lit_vertices_are_the_same() {
+    use model::light::{Light, Material, Source};
+    let mut random = Random::seeded(6);
+    let mut counts = [0; 3];
+    for case in 0..20_000_usize {
+        let mut number = || small(&mut random);
+        let mut three = || [number(), number(), number()];
+        let (point, normal) = (three(), three());
+        let [mut position, attenuation, direction, half, falloff] = [(); 5].map(|()| three());
+        position[2] += 4.0;
+        let attenuation = attenuation.map(|c| c.abs() + 0.125);
+        let (range, offset) = (3.0 + 2.0 * number(), number());
+        let first = match case % 3 {
+            0 => Light::Far { direction, half },
+            kind => {
+                Light::Near { position, attenuation, range, cone: (kind == 2).then_some((direction, offset, falloff)) }
+            }
+        };
+        let source = |n: usize| [Source::Material, Source::Diffuse, Source::Specular][case / n % 3];
+        let second = Light::Far { direction: normal, half };
+        let material = Material {
+            sources: [3, 9, 27, 81].map(source),
+            scene: number(),
+            factor: number(),
+            powers: [(); 6].map(|()| number()),
+            lights: [first, second].map(|light| (light, [number(), number(), number()])).to_vec(),
+            local_eye: case / 243 % 2 == 1,
+        };
+        let (given, separate) = ([number(), number()], case / 486 % 2 == 1);
+        let [x, y, z] = point.map(f32::to_bits);
+        let surface = LitSurface::new([x, y, z, 1.0_f32.to_bits()], normal.map(f32::to_bits), [0.0; 3]);
+        let (colors, _) = shading(&material, separate).colors(&surface, given.map(|red| [red; 4]));
+        // The oracle knows no infinities, which divisors of 0 give.
+        if colors.iter().any(|color| !color[0].is_finite()) {
+            continue;
+        }
+        let expected = model::light::red(&material, separate, point, normal, given).map(|red| red.real() as f32);
+        assert_eq!(colors[0][0], expected[0], "case {case}, primary: {material:?}");
+        if separate {
+            assert_eq!(colors[1][0], expected[1], "case {case}, secondary: {material:?}");
+        }
+        counts[case % 3] += 1;
+    }
+    assert!(counts.iter().all(|count| *count > 6_000), "{counts:?}");
+}

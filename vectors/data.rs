@@ -53,3 +53,26 @@ pub mod images {
         SEEN "bump_map_test_image.png",
     }
 }
+
+/// Meshes that the captured programs light (MIT), packed with gzip: the number of vertices, then two lists of floats, positions and normals.
+pub mod meshes {
+    macro_rules! files {
+        ($($(#[$meta:meta])* $name:ident $file:literal),+ $(,)?) => {
+            $($(#[$meta])* pub const $name: &[u8] = include_bytes!(concat!("captures/meshes/", $file));)+
+        };
+    }
+    files! {
+        /// A square of 50 by 50 fields.
+        GRID "flat_mesh_grid.mesh.gz",
+        /// A cone.
+        CONE "light_control_test_mesh_cone.mesh.gz",
+        /// A cylinder.
+        CYLINDER "light_control_test_mesh_cylinder.mesh.gz",
+        /// A sphere.
+        SPHERE "light_control_test_mesh_sphere.mesh.gz",
+        /// The head of an ape.
+        HEAD "light_control_test_mesh_suzanne.mesh.gz",
+        /// A torus.
+        TORUS "light_control_test_mesh_torus.mesh.gz",
+    }
+}

@@ -83,7 +83,9 @@ fn meaning(kelvin: u32, word: u32) -> Option<String> {
             named(BlendFactor::ALL, raster::blend_factor, word)
         }
         class::SET_BLEND_EQUATION => named(BlendEquation::ALL, raster::blend_equation, word),
-        class::SET_SURFACE_FORMAT => named(SurfaceFormat::ALL, raster::surface_format, raster::SURFACE_COLOR.value_in(word)),
+        class::SET_SURFACE_FORMAT => {
+            named(SurfaceFormat::ALL, raster::surface_format, raster::SURFACE_COLOR.value_in(word))
+        }
         class::SET_FOG_MODE => {
             FOG_MODES.iter().find(|(_, value)| *value == word).map(|(mode, _)| mode.name().to_owned())
         }

@@ -4,6 +4,10 @@
 /// whose names begin with `FOLDER`.
 pub const OPERATIONS: &[(&str, &str, u32, &[&str])] = &[
     ("vertex-instruction", "three sources of four floats, by the instruction", 384, &[]),
+    ("transform-unit", "four floats: products, sums, reciprocals and a root", 128, &[]),
+    ("light-arithmetic", "two vectors of words, and two words", 192, &[]),
+    ("light-share", "a vertex, a light and a power", 928, &[]),
+    ("light-color", "a vertex's colours and a light's, by their sources", 256, &[]),
     ("vertex-color", "a float to a byte", 32, &["vertex-color"]),
     ("constant-color", "a float to a byte", 32, &["constant-color"]),
     ("vertex-snap", "a float to 1/16 pixel", 32, &["vertex-snap"]),

@@ -14,6 +14,7 @@ pub mod block;
 pub mod combiner;
 pub mod coordinate;
 pub mod fog;
+pub mod light;
 pub mod raster;
 pub mod real;
 pub mod rop;

@@ -1,14 +1,14 @@
 //! Words of the light unit: single-precision numbers with 14 significant bits, whose products and sums truncate (FOG-1,
-//! FOG-3).
+//! FOG-3, VTX-6).
 //!
 //! A word is the bit pattern of a binary32 number whose lowest ten bits are 0. There are no denormals, and the only NaN
-//! is `NAN`.
+//! is `NAN`. The unit has a part for vectors of three numbers, and one for single numbers, which keeps no guard bits in sums.
+
+use super::transform::middle;
+pub use super::transform::{INFINITY, ONE, SIGN};
 
 /// The word of a NaN.
-pub(crate) const NAN: u32 = 0x7fff_fc00;
-
-/// The word of infinity.
-pub(crate) const INFINITY: u32 = 0x7f80_0000;
+pub const NAN: u32 = 0x7fff_fc00;
 
 /// The word of the largest finite number.
 const LARGEST_FINITE: u32 = 0x7f7f_fc00;
@@ -50,9 +50,49 @@ pub fn product(a: u32, b: u32) -> u32 {
     finite(sign, mantissa(a) * mantissa(b), exponent(a) + exponent(b) - 127 - FRACTION_BITS as i32)
 }
 
-/// FOG-3: returns the sum of three words. Each is cut five bits below the last bit of the largest; the sum is exact and
+/// FOG-3: returns the sum of up to three words. Each is cut five bits below the last bit of the largest; the sum is exact and
 /// then truncated.
-pub fn sum(terms: [u32; 3]) -> u32 {
+pub fn sum<const N: usize>(terms: [u32; N]) -> u32 {
+    const { assert!(N <= 3) };
+    guarded_sum(terms, GUARD_BITS)
+}
+
+/// VTX-6: returns a . b: the products, each truncated, in one sum.
+pub fn dot(a: [u32; 3], b: [u32; 3]) -> u32 {
+    sum::<3>(std::array::from_fn(|k| product(a[k], b[k])))
+}
+
+/// VTX-6: returns the sum of two words in the part for single numbers, where the smaller one is cut at the last bit of the larger.
+pub fn single_sum(a: u32, b: u32) -> u32 {
+    guarded_sum([a, b], 0)
+}
+
+/// VTX-6: returns the product of two words in the part for single numbers, where too large ones and those with infinity are infinity with the sign.
+pub fn single_product(a: u32, b: u32) -> u32 {
+    let is_large = is_infinite(a) || is_infinite(b) || exponent(a) + exponent(b) - 127 >= 255;
+    if is_large && ![a, b].into_iter().any(|x| is_nan(x) || is_zero(x)) {
+        return (a ^ b) & SIGN | INFINITY;
+    }
+    product(a, b)
+}
+
+/// VTX-6: returns 1/x by one step of Newton's method from seven bits; of zero it is infinity. It has 12 bits after the leading one.
+pub fn reciprocal(x: u32) -> u32 {
+    if is_nan(x) {
+        return NAN;
+    }
+    if is_zero(x) {
+        return INFINITY;
+    }
+    if is_infinite(x) {
+        return 0;
+    }
+    let first = (1 << 14) / middle(x);
+    let second = ((1 << 21) - first * mantissa(x)) * first >> 14;
+    finite(x & SIGN, second, 253 - exponent(x) + 1)
+}
+
+fn guarded_sum<const N: usize>(terms: [u32; N], guard: u32) -> u32 {
     if terms.iter().any(|term| is_nan(*term)) {
         return NAN;
     }
@@ -64,11 +104,11 @@ pub fn sum(terms: [u32; 3]) -> u32 {
     let mut sum = 0_i32;
     for term in terms.into_iter().filter(|term| *term != 0) {
         let down = (largest - exponent(term)).min(31);
-        let magnitude = (mantissa(term) << GUARD_BITS >> down) as i32;
+        let magnitude = (mantissa(term) << guard >> down) as i32;
         sum += if term >> 31 == 1 { -magnitude } else { magnitude };
     }
     let sign = u32::from(sum < 0) << 31;
-    finite(sign, sum.unsigned_abs(), largest - GUARD_BITS as i32)
+    finite(sign, sum.unsigned_abs(), largest - guard as i32)
 }
 
 /// Truncates a magnitude to a word. `exponent` is the exponent field of a word whose last bit has the same weight as
@@ -109,6 +149,8 @@ fn is_nan(word: u32) -> bool {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::float_arithmetic, reason = "compares with floats")]
+
     use super::*;
 
     #[test]
@@ -142,6 +184,28 @@ mod tests {
         assert_eq!((first, sum([c0, first, 0])), (0xbe01_4400, 0x3faf_d400));
         let second = product(c1, word(3.0_f32.to_bits()));
         assert_eq!((second, f32::from_bits(sum([c0, second, 0]))), (0xbbdd_9800, 12232.0 / 8192.0));
+    }
+
+    /// The seeds are floors: those to nearest would give 1/1.0859375 another bit.
+    #[test]
+    fn reciprocals_and_single_numbers() {
+        let one = ONE;
+        assert_eq!([reciprocal(one), reciprocal(one | SIGN)], [0x3f7f_f800, 0xbf7f_f800]);
+        assert_eq!([reciprocal(0), reciprocal(NAN), reciprocal(INFINITY)], [INFINITY, NAN, 0]);
+        assert_eq!(reciprocal(0x3f8a_8800), 0x3f6c_8000);
+        for fraction in 0..1 << FRACTION_BITS {
+            let x = one | fraction << 10;
+            let error = f64::from(f32::from_bits(reciprocal(x))) * f64::from(f32::from_bits(x)) - 1.0;
+            assert!((-1.0 / 1024.0..=0.0).contains(&error), "{x:08x} {error}");
+        }
+        // 2^-14 lies below the last bit of 1; a vector's sum keeps it, until it is cut.
+        let tiny = (127 - 14) << 23;
+        assert_eq!([single_sum(one, tiny), single_sum(one, tiny | SIGN)], [one, one]);
+        assert_eq!(sum([one, tiny | SIGN]), 0x3f7f_fc00);
+        assert_eq!(single_product(LARGEST_FINITE, LARGEST_FINITE | SIGN), INFINITY | SIGN);
+        assert_eq!([single_product(0, INFINITY), single_product(one | SIGN, INFINITY)], [0, INFINITY | SIGN]);
+        assert_eq!([single_product(NAN, 0), single_sum(NAN, one)], [NAN; 2]);
+        assert_eq!(dot([one; 3], [one, one, one | SIGN]), one);
     }
 
     #[test]

@@ -181,8 +181,8 @@ fn reciprocal_parts(x: u32) -> (i32, u32) {
         return (exponent, 0);
     }
     let mantissa = u64::from(fraction | LEADING);
-    // The reciprocal of the middle of all mantissas with these six bits, to nearest.
-    let middle = 129 + 2 * (fraction >> 17);
+    // 2^7 times the reciprocal of the middle, to nearest.
+    let middle = middle(x);
     let first = u64::from((2 * (1 << 14) + middle) / (2 * middle));
     let second = (((1 << 31) - first * mantissa) * first) >> 24;
     let third = (((1 << 37) - second * mantissa) * second) >> 25;
@@ -214,7 +214,12 @@ pub fn reciprocal_root(x: u32) -> u32 {
 /// an exponent that is even or odd with x's.
 pub(crate) fn twice_root_of_middle(x: u32) -> u32 {
     let odd = (exponent(x) & 1) ^ 1;
-    ((1_u32 << 23 >> odd) / (129 + 2 * (fraction(x) >> 17))).isqrt()
+    ((1_u32 << 23 >> odd) / middle(x)).isqrt()
+}
+
+/// Returns 2^7 times the middle of all mantissas in [1, 2) that share six bits of fraction with x.
+pub(crate) fn middle(x: u32) -> u32 {
+    129 + 2 * (fraction(x) >> 17)
 }
 
 #[cfg(test)]

@@ -1,12 +1,12 @@
-//! The vertex side of the fixed-function pipe, as far as texture coordinates and fog need it: eye space, generated
-//! coordinates, texture matrices and fog coordinates.
+//! The vertex side of the fixed-function pipe: eye space, generated coordinates, texture matrices, fog coordinates and light.
 //!
-//! [`mod@unit`] has the arithmetic of the chip's transform unit. Everything else is computed in 32-bit floats in the order in
+//! [`mod@unit`] has the arithmetic of the chip's transform unit, [`light`] that of its light unit. Everything else is computed in 32-bit floats in the order in
 //! which it is written, with + - * / and square root only, so that every machine computes the same vertices. A vector
 //! without a length does not become NaN: its direction is zero.
 #![allow(clippy::float_arithmetic, reason = "the vertex side is f32 by rule; set-up quantises afterwards")]
 
 pub mod fog;
+pub mod light;
 pub mod point;
 pub mod shader;
 pub mod texgen;

@@ -21,7 +21,11 @@ mod faces;
 mod fog;
 mod fog_carryover;
 mod images;
+mod lighting;
+mod lights;
 mod lines;
+mod materials;
+mod meshes;
 mod points;
 mod polygon_offset;
 mod primitives;
@@ -30,6 +34,7 @@ mod sampling;
 mod shader;
 mod shadow;
 mod space;
+mod specular;
 mod stencil;
 mod table;
 mod texel_formats;
@@ -192,7 +197,16 @@ const SUITES: &[Suite] = &[
     ("Fog_vsh", fog::of_program),
     ("Front_face", faces::frames),
     ("High_vertex_count", primitives::many_vertices),
+    ("Lighting_Two_Sided", materials::two_sides),
+    ("Lighting_accumulation", lights::accumulation),
+    ("Lighting_control", lights::controls),
+    ("Lighting_normals", lights::normals),
+    ("Lighting_range", lights::ranges),
+    ("Lighting_spotlight", lights::spotlights),
     ("Line_width", lines::widths),
+    ("Material_alpha", materials::alphas),
+    ("Material_color", materials::colors),
+    ("Material_color_source", materials::sources),
     ("Overlapping_draw_modes", primitives::mixed_modes),
     ("Pixel_shader", shader::programs),
     ("Point_params", points::parameters_varied),
@@ -200,6 +214,8 @@ const SUITES: &[Suite] = &[
     ("Point_sprite", points::sprites),
     ("Shade_model", primitives::shade_model),
     ("Smoothing_control", lines::smoothing),
+    ("Specular", specular::fronts),
+    ("Specular_back", specular::backs),
     ("Stencil", stencil::operations),
     ("Stencil_func", stencil::functions),
     ("Stipple_tests", lines::stipples),

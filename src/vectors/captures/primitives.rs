@@ -1,5 +1,6 @@
 //! RAS-1 to RAS-5, WGT-1, NUM-4: every topology, smooth and flat, with and without perspective; float colours; large vertex counts.
 
+use super::lighting::{Given, Light, POWER_10, Seen, lit, material, shading};
 use super::space::without_depth;
 use super::*;
 
@@ -96,6 +97,33 @@ const SHAPES: [Shape; 6] = [
     ("Poly", Topology::Polygon, POLYGON),
 ];
 
+/// The normals of vertices in Shade_model.
+const NORMALS: [[f32; 3]; 9] = [
+    [0.577_350_26, -0.577_350_26, 0.577_350_26],
+    [0.0, 0.0, 1.0],
+    [0.408_248_28, 0.408_248_28, 0.816_496_6],
+    [-0.666_67, 0.666_67, 0.333_333_3],
+    [0.301_5, 0.301_5, 0.904_5],
+    [0.485_1, 0.485_1, 0.727_6],
+    [0.624_7, 0.624_7, 0.468_5],
+    [0.267_3, 0.534_5, 0.801_8],
+    [0.676_7, 0.676_7, 0.29],
+];
+
+/// Returns a shape whose vertices a light behind the viewer lights.
+fn lit_shape(topology: Topology, points: &[Corner], at: impl Iterator<Item = f32>) -> Draw {
+    let light = Light::Infinite { direction: [0.0, 0.0, 1.0], half: [0.0; 3] };
+    let lamp = (light, [[0.0; 3], [0.0, 1.0, 0.7], [0.0; 3]]);
+    let shading = shading(&[lamp], material([0.0; 3], 1.0, POWER_10), 1 << 16 | 1);
+    let given = points.iter().zip(NORMALS).zip(at).map(|(([x, y, ..], normal), w)| Given {
+        position: [*x, *y, 0.1, w],
+        normal,
+        diffuse: [1.0; 4],
+        specular: [0.0; 4],
+    });
+    draw(topology, given.map(|given| lit(&given, &shading, Seen::Front)).collect())
+}
+
 /// Adds the frames of Shade_model: colours, smooth and flat by either provoking vertex, and textures, which the shade model does not affect.
 pub(super) fn shade_model(frames: &mut Frames) {
     let colors = [abgr(0xff20_c0c0), abgr(0xff00_0070)];
@@ -104,10 +132,12 @@ pub(super) fn shade_model(frames: &mut Frames) {
         let programmed = points.iter().map(|[x, y, ..]| without_depth(space::programmed([*x, *y, 0.1, 1.0])));
         let programmed: Vec<[f32; 4]> = programmed.collect();
         // The w of the vertices grows by `more` from one to the next.
+        let growing = |w: f32, more: f32| std::iter::successors(Some(w), move |w| Some(w + more));
         let fixed = |w: f32, more: f32| {
-            let w = std::iter::successors(Some(w), |w| Some(w + more));
-            points.iter().zip(w).map(|([x, y, ..], w)| space::flat([*x, *y, 0.1, w])).collect()
+            points.iter().zip(growing(w, more)).map(|([x, y, ..], w)| space::flat([*x, *y, 0.1, w])).collect()
         };
+        let lit = [("Fixed", 1.0, 0.0), ("W_Fixed", 0.5, 0.05)]
+            .map(|(name, w, more)| (name, lit_shape(topology, points, growing(w, more))));
         let pictures = |positions: Vec<[f32; 4]>| {
             let vertices = positions.iter().zip(points).map(|(at, [.., s, t])| placed(*at, [*s, *t]));
             one(0xff2c_302e, Some(&texture), fetching(draw(topology, vertices.collect()), 0, nearest(0)))
@@ -128,6 +158,10 @@ pub(super) fn shade_model(frames: &mut Frames) {
                 frames.push(format!("Prog_{suffix}"), one(0xff2c_302e, None, colored));
                 frames.push(format!("ProgTex_{suffix}"), program.clone());
                 frames.push(format!("FixedTex_{suffix}"), flat_w.clone());
+                for (name, shape) in &lit {
+                    let shape = Draw { shade_model, provoking_vertex, ..shape.clone() };
+                    frames.push(format!("{name}_{suffix}"), one(0xff2c_302e, None, shape));
+                }
                 frames.push(format!("W_FixedTex_{suffix}"), varying_w.clone());
             }
         }
@@ -189,7 +223,7 @@ fn product(a: f32, b: f32) -> f32 {
 }
 
 /// Returns the colour of a float as a scene may have it: a positive NaN is all of a colour, a negative one nothing.
-fn limited(value: f32) -> f32 {
+pub(super) fn limited(value: f32) -> f32 {
     if value.is_nan() { f32::from(u8::from(value.is_sign_positive())) } else { value.clamp(-8.0, 8.0) }
 }
 

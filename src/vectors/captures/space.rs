@@ -56,6 +56,12 @@ pub(super) fn unproject([x, y]: [f32; 2], z: f32, inverse: &Matrix) -> [f32; 4] 
     [x, y, z, 1.0]
 }
 
+/// Returns the point of the world that programs find for a place in the window.
+pub(super) fn unproject_depth(place: [f32; 4], inverse: &Matrix) -> [f32; 4] {
+    let [x, y, z, w] = in_single(place, inverse);
+    [x / w, y / w, z / w, 1.0]
+}
+
 /// Returns the rows of a matrix for column vectors.
 pub(super) fn rows(matrix: &Matrix) -> [[f32; 4]; 4] {
     std::array::from_fn(|row| std::array::from_fn(|column| matrix[column][row] as f32))

@@ -109,6 +109,7 @@ mod texel;
 mod texture;
 mod texture_environment;
 mod texture_stage;
+mod vertex;
 
 pub use configured::{
     ConfiguredAddress, ConfiguredBlend, ConfiguredCube, ConfiguredFilter, ConfiguredFinal, ConfiguredProgram,
@@ -124,6 +125,10 @@ use ninebit::state::{Bias, Named, Scale};
 pub fn all() -> Vec<&'static dyn Unit> {
     vec![
         &geometry::VertexInstruction,
+        &vertex::TransformUnit,
+        &vertex::LightArithmetic,
+        &vertex::LightShare,
+        &vertex::LightColor,
         &number::VertexColor,
         &number::ConstantColor,
         &number::VertexSnap,

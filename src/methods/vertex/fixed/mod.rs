@@ -3,17 +3,16 @@
 //! INFERRED: the formulas are those of envytools' model of NV10 (`nvhw/pgraph_celsius_xfrm.c`, which its `hwtest` compares
 //! with cards) where that chip has the state, and of xemu and Mesa's nouveau driver for what is new; they agree where they
 //! overlap, unless a comment says so. Positions, eye space and fog coordinates are in the arithmetic of the transform unit
-//! (VTX-5). Generated coordinates and light are binary32 in the order in which they are written; the chip cuts
-//! the first, and its light unit has 14 significant bits.
+//! (VTX-5), colours in that of the light unit (VTX-6). Generated coordinates are binary32 in the order in which they are
+//! written; the chip cuts them.
 #![allow(clippy::float_arithmetic, reason = "the vertex side is f32 by rule")]
 
-mod light;
 mod read;
 
 use super::{ATTRIBUTES, Attributes, Outputs, attribute};
-use light::{Lighting, Surface};
-use ninebit::number::transform::{SIGN, is_zero, product, reciprocal, sum};
+use ninebit::number::transform::{ONE, SIGN, product, sum};
 use ninebit::state::Profile;
+use ninebit::vertex::light::{Shading, Surface};
 use ninebit::vertex::point::PointParameters;
 use ninebit::vertex::texgen::CoordinateSet;
 use ninebit::vertex::unit::{self, words};
@@ -35,8 +34,7 @@ pub struct FixedFunction {
     eye: [f32; 3],
     viewer_is_far: bool,
     sets: [CoordinateSet; 4],
-    lighting: Option<Lighting>,
-    specular: Specular,
+    shading: Shading,
     fog: Option<Fog>,
     points: Option<PointParameters>,
     /// What is added to a position after its division (0x0a20).
@@ -68,16 +66,6 @@ impl Skin {
     }
 }
 
-/// What becomes of secondary colours.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Specular {
-    enabled: bool,
-    /// Whether specular light is kept apart from the primary colour.
-    separate: bool,
-    /// Whether alpha is that of the vertex, in place of 1.
-    keeps_alpha: bool,
-}
-
 /// Where the fog coordinate comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fog {
@@ -90,14 +78,11 @@ enum Fog {
 /// A vertex in eye space.
 struct Eye {
     position: [f32; 4],
-    /// The position divided by its w.
-    point: [f32; 3],
     normal: [f32; 3],
     /// From the vertex to the eye.
     to_eye: [f32; 3],
-    /// The same, of unit length or zero.
-    toward: [f32; 3],
-    distance: f32,
+    /// The vertex as light falls on it.
+    surface: Surface,
 }
 
 impl FixedFunction {
@@ -117,12 +102,12 @@ impl FixedFunction {
     /// Returns which attributes are read for certain. Texture coordinates are not among them: which sets count depends on the units.
     pub fn inputs(&self) -> [bool; ATTRIBUTES] {
         let mut read = [false; ATTRIBUTES];
-        let is_lit = self.lighting.is_some();
+        let is_lit = self.shading.lighting.is_some();
         read[attribute::POSITION] = true;
         read[attribute::WEIGHT] = self.skin.is_some();
         read[attribute::NORMAL] = is_lit;
         read[attribute::DIFFUSE] = !is_lit;
-        read[attribute::SPECULAR] = !is_lit && self.specular.enabled;
+        read[attribute::SPECULAR] = !is_lit && self.shading.secondary.enabled;
         read[attribute::FOG] = matches!(self.fog, Some(Fog::Vertex));
         read
     }
@@ -130,22 +115,12 @@ impl FixedFunction {
     fn eye(&self, inputs: &Attributes) -> Eye {
         let weights = inputs[attribute::WEIGHT];
         let position = self.blended(&self.model_view, weights, inputs[attribute::POSITION]);
-        let [x, y, z, w] = position;
-        let point = if is_zero(w) { [x, y, z] } else { [x, y, z].map(|c| product(c, reciprocal(w))) };
         let [x, y, z, _] = inputs[attribute::NORMAL];
         let [x, y, z, _] = self.blended(&self.normal, weights, [x, y, z, 0.0]);
         let normal = if self.normalizes { unit::direction([x, y, z]).0 } else { [x, y, z] };
-        let to_eye = std::array::from_fn(|k| sum([self.eye[k].to_bits(), point[k] ^ SIGN]));
-        let (toward, distance) = unit::direction(to_eye);
+        let surface = Surface::new(position, normal, self.eye);
         let real = |v: [u32; 3]| v.map(f32::from_bits);
-        Eye {
-            position: position.map(f32::from_bits),
-            point: real(point),
-            normal: real(normal),
-            to_eye: real(to_eye),
-            toward: real(toward),
-            distance: f32::from_bits(distance),
-        }
+        Eye { position: position.map(f32::from_bits), normal: real(normal), to_eye: real(surface.to_eye), surface }
     }
 
     /// Returns the sum of M v with the weight of each matrix M, or the product with the only one.
@@ -184,14 +159,14 @@ impl FixedFunction {
     }
 
     fn fog(&self, eye: &Eye, inputs: &Attributes) -> f32 {
-        let [x, y, z] = eye.point;
         match self.fog {
             None => 0.0,
             // INFERRED, from xemu: limited to 0 to 1.
             Some(Fog::SpecularAlpha) => inputs[attribute::SPECULAR][3].clamp(0.0, 1.0),
-            Some(Fog::Radial) => eye.distance,
+            Some(Fog::Radial) => f32::from_bits(unit::direction(eye.surface.to_eye).1),
             Some(Fog::Planar { plane, absolute }) => {
-                let distance = f32::from_bits(unit::dot(words([x, y, z, 1.0]), words(plane)));
+                let [x, y, z] = eye.surface.point;
+                let distance = f32::from_bits(unit::dot([x, y, z, ONE], words(plane)));
                 if absolute { distance.abs() } else { distance }
             }
             Some(Fog::Vertex) => inputs[attribute::FOG][0],
@@ -200,52 +175,19 @@ impl FixedFunction {
 
     /// Returns outputs of which the colours are right.
     fn colors(&self, eye: &Eye, inputs: &Attributes) -> Outputs {
-        let mut outputs = Outputs {
+        let given = [inputs[attribute::DIFFUSE], inputs[attribute::SPECULAR]];
+        let ([diffuse, specular], back) = self.shading.colors(&eye.surface, given);
+        let [back_diffuse, back_specular] =
+            back.unwrap_or([inputs[attribute::BACK_DIFFUSE], inputs[attribute::BACK_SPECULAR]]);
+        Outputs {
             position: [0.0; 4],
-            diffuse: inputs[attribute::DIFFUSE],
-            specular: inputs[attribute::SPECULAR],
-            back_diffuse: inputs[attribute::BACK_DIFFUSE],
-            back_specular: inputs[attribute::BACK_SPECULAR],
+            diffuse,
+            specular,
+            back_diffuse,
+            back_specular,
             fog: 0.0,
             point_size: 0.0,
             coordinates: [[0.0; 4]; 4],
-        };
-        if let Some(lighting) = &self.lighting {
-            let surface = Surface {
-                point: eye.point,
-                normal: eye.normal,
-                to_eye: eye.toward,
-                diffuse: outputs.diffuse,
-                specular: outputs.specular,
-            };
-            [outputs.diffuse, outputs.specular] = lighting.front(&surface);
-            if let Some(back) = lighting.back(&surface) {
-                [outputs.back_diffuse, outputs.back_specular] = back;
-            }
-        }
-        self.secondary(&mut outputs, inputs);
-        outputs
-    }
-
-    /// Puts specular light where it belongs. INFERRED, from xemu.
-    fn secondary(&self, outputs: &mut Outputs, inputs: &Attributes) {
-        let Specular { enabled, separate, keeps_alpha } = self.specular;
-        if enabled && !separate {
-            if self.lighting.is_some() {
-                for k in 0..3 {
-                    outputs.diffuse[k] += outputs.specular[k];
-                    outputs.back_diffuse[k] += outputs.back_specular[k];
-                }
-            }
-            outputs.specular = inputs[attribute::SPECULAR];
-            outputs.back_specular = inputs[attribute::BACK_SPECULAR];
-        }
-        for color in [&mut outputs.specular, &mut outputs.back_specular] {
-            if !enabled {
-                *color = super::DEFAULT;
-            } else if !keeps_alpha {
-                color[3] = 1.0;
-            }
         }
     }
 }

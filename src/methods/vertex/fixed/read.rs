@@ -1,9 +1,9 @@
 //! Reads the state of the fixed-function pipe from the words that a log set.
 
-use super::light::{ColorSource, Light, Lighting, Side, Sources, Spot};
-use super::{FixedFunction, Fog, Skin, Specular};
+use super::{FixedFunction, Fog, Skin};
 use ninebit::state::Profile;
 use ninebit::vertex::Rows;
+use ninebit::vertex::light::{ColorSource, Light, Lighting, SecondaryColor, Shading, Side, Sources, Spot};
 use ninebit::vertex::point::PointParameters;
 use ninebit::vertex::texgen::{CoordinateSet, Generator};
 
@@ -104,8 +104,7 @@ impl FixedFunction {
         let skin = skin(&mut words);
         needs.position |= skin.is_some();
         let sets = sets(&mut words, &mut needs);
-        let specular = specular(&mut words);
-        let lighting = words.flag(LIGHTING_ENABLE).then(|| lighting(&mut words, specular, &mut needs));
+        let shading = shading(&mut words, &mut needs);
         let fog = fog(&mut words, &mut needs);
         let points = points(&mut words, &mut needs);
         needs.position |= needs.eye;
@@ -131,8 +130,7 @@ impl FixedFunction {
             eye,
             viewer_is_far,
             sets,
-            lighting,
-            specular,
+            shading,
             fog,
             points,
             viewport_offset,
@@ -200,25 +198,26 @@ fn generator(words: &mut Words<'_>, set: u32, component: u32) -> Option<Generato
     }
 }
 
-fn specular(words: &mut Words<'_>) -> Specular {
+fn shading(words: &mut Words<'_>, needs: &mut Needs) -> Shading {
     let enabled = words.flag(SPECULAR_ENABLE);
     let control = if enabled { words.word(LIGHT_CONTROL) } else { 0 };
-    Specular { enabled, separate: control & 1 != 0, keeps_alpha: control >> 17 & 1 != 0 }
+    let secondary = SecondaryColor { enabled, separate: control & 1 != 0, keeps_alpha: control >> 17 & 1 != 0 };
+    let lighting = words.flag(LIGHTING_ENABLE).then(|| lighting(words, needs));
+    Shading { lighting, secondary }
 }
 
-fn lighting(words: &mut Words<'_>, specular: Specular, needs: &mut Needs) -> Lighting {
+fn lighting(words: &mut Words<'_>, needs: &mut Needs) -> Lighting {
     needs.normal = true;
     let local_eye = words.word(LIGHT_CONTROL) >> 16 & 1 != 0;
     let mask = words.word(LIGHT_ENABLE_MASK);
     let lights: Vec<(u32, Light)> = (0..8)
         .filter(|n| mask >> (2 * n) & 3 != 0)
-        .map(|n| (n, light(words, n, mask >> (2 * n) & 3, specular.enabled && !local_eye)))
+        .map(|n| (n, light(words, n, mask >> (2 * n) & 3, !local_eye)))
         .collect();
     let local = lights.iter().any(|(_, light)| matches!(light, Light::Local { .. }));
     needs.position |= local;
-    let shines = specular.enabled && !lights.is_empty();
-    needs.eye |= shines && local_eye;
-    let eye_direction = if shines && local && !local_eye { words.floats(EYE_DIRECTION) } else { [0.0; 3] };
+    needs.eye |= !lights.is_empty() && local_eye;
+    let eye_direction = if local && !local_eye { words.floats(EYE_DIRECTION) } else { [0.0; 3] };
     let material = words.word(COLOR_MATERIAL);
     let front = Parts {
         material: material & 255,
@@ -239,8 +238,8 @@ fn lighting(words: &mut Words<'_>, specular: Specular, needs: &mut Needs) -> Lig
         step: 64,
     };
     let numbers: Vec<u32> = lights.iter().map(|(n, _)| *n).collect();
-    let front = side(words, &front, &numbers, shines);
-    let back = words.flag(TWO_SIDE_LIGHT_EN).then(|| side(words, &back, &numbers, shines));
+    let front = side(words, &front, &numbers);
+    let back = words.flag(TWO_SIDE_LIGHT_EN).then(|| side(words, &back, &numbers));
     Lighting { lights: lights.into_iter().map(|(_, light)| light).collect(), front, back, local_eye, eye_direction }
 }
 
@@ -271,7 +270,7 @@ struct Parts {
     step: u32,
 }
 
-fn side(words: &mut Words<'_>, parts: &Parts, lights: &[u32], shines: bool) -> Side {
+fn side(words: &mut Words<'_>, parts: &Parts, lights: &[u32]) -> Side {
     let mut source = |low: u32| match parts.material >> low & 3 {
         0 => ColorSource::Material,
         1 => ColorSource::Diffuse,
@@ -281,11 +280,10 @@ fn side(words: &mut Words<'_>, parts: &Parts, lights: &[u32], shines: bool) -> S
     let sources = Sources { emission: source(0), ambient: source(2), diffuse: source(4), specular: source(6) };
     let alpha = if sources.diffuse == ColorSource::Material { words.float(parts.alpha) } else { 0.0 };
     let factor = words.floats(parts.factor);
-    let powers = if shines { words.floats(parts.powers) } else { [0.0; 6] };
+    let powers = if lights.is_empty() { [0.0; 6] } else { words.floats(parts.powers) };
     let colors = lights.iter().map(|n| {
         let base = parts.colors + parts.step * n;
-        let specular = if shines { words.floats(base + 24) } else { [0.0; 3] };
-        [words.floats(base), words.floats(base + 12), specular]
+        [0, 12, 24].map(|color| words.floats(base + color))
     });
     let colors = colors.collect();
     Side { sources, ambient: words.floats(parts.ambient), factor, alpha, powers, colors }

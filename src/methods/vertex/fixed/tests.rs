@@ -46,6 +46,11 @@ impl Log {
     fn lit(&mut self, mask: u32) -> &mut Log {
         self.word(0x0314, 1).word(0x0294, 0).word(0x0298, 0).word(0x03bc, mask).word(0x03a4, 0).word(0x17c4, 0);
         self.floats(0x0480, &IDENTITY).floats(0x0580, &IDENTITY);
+        // No specular light.
+        self.floats(0x09e0, &[0.0; 6]).floats(0x17e0, &[0.0; 3]);
+        for light in [0x1000, 0x1080] {
+            self.floats(light + 0x18, &[0.0; 3]).floats(light + 0x28, &[0.0; 3]);
+        }
         self.floats(0x0a10, &[0.125, 0.25, 0.0]).floats(0x03a8, &[0.0; 3]).floats(0x03b4, &[0.75])
     }
 
@@ -74,6 +79,11 @@ fn window(clip: [f32; 4]) -> [f32; 4] {
 
 fn near(a: [f32; 4], b: [f32; 4]) {
     assert!((0..4).all(|k| (a[k] - b[k]).abs() < 1e-6), "{a:?} {b:?}");
+}
+
+/// The same for numbers of 14 bits.
+fn near_words(a: [f32; 4], b: [f32; 4]) {
+    assert!((0..4).all(|k| (a[k] - b[k]).abs() < 1e-3), "{a:?} {b:?}");
 }
 
 #[test]
@@ -121,7 +131,7 @@ fn missing_words_are_named() {
         .into_iter()
         .chain(words(0x0480, 16))
         .chain(words(0x0580, 16))
-        .chain(words(0x1100, 6))
+        .chain(words(0x1100, 9))
         .chain(words(0x1124, 1))
         .chain(words(0x1140, 7))
         .chain(words(0x115c, 6))
@@ -168,13 +178,13 @@ fn one_directional_light() {
     let mut log = Log::new();
     log.lit(1).floats(0x1000, &[0.0625, 0.0, 0.0, 0.5, 1.0, 0.25]).floats(0x1034, &[0.0, 0.0, 1.0]);
     let lit = log.run(&at([0.0; 3], [0.0, 0.6, 0.8]));
-    near(lit.diffuse, [0.125 + 0.0625 + 0.4, 0.25 + 0.8, 0.2, 0.75]);
+    near_words(lit.diffuse, [0.125 + 0.0625 + 0.4, 0.25 + 0.8, 0.2, 0.75]);
     assert_eq!(lit.specular, [0.0, 0.0, 0.0, 1.0]);
     // From behind only the ambient light arrives.
-    near(log.run(&at([0.0; 3], [0.0, 0.6, -0.8])).diffuse, [0.1875, 0.25, 0.0, 0.75]);
+    near_words(log.run(&at([0.0; 3], [0.0, 0.6, -0.8])).diffuse, [0.1875, 0.25, 0.0, 0.75]);
     // Normals have any length unless they are normalised.
-    near(log.run(&at([0.0; 3], [0.0, 0.0, 2.0])).diffuse, [1.1875, 2.25, 0.5, 0.75]);
-    near(log.word(0x03a4, 1).run(&at([0.0; 3], [0.0, 0.0, 2.0])).diffuse, [0.6875, 1.25, 0.25, 0.75]);
+    near_words(log.run(&at([0.0; 3], [0.0, 0.0, 2.0])).diffuse, [1.1875, 2.25, 0.5, 0.75]);
+    near_words(log.word(0x03a4, 1).run(&at([0.0; 3], [0.0, 0.0, 2.0])).diffuse, [0.6875, 1.25, 0.25, 0.75]);
 }
 
 /// Sources of the material: emission, ambient and diffuse from the primary colour.
@@ -187,13 +197,13 @@ fn colors_of_the_vertex() {
     let [r, g, b, a] = inputs[3];
     log.word(0x0298, 1 << 2);
     let ambient = |c: f32, scene: f32| c * 0.25 + scene + 0.5 * c + 1.0;
-    near(log.run(&inputs).diffuse, [ambient(r, 0.125), ambient(g, 0.25), ambient(b, 0.0), 0.75]);
+    near_words(log.run(&inputs).diffuse, [ambient(r, 0.125), ambient(g, 0.25), ambient(b, 0.0), 0.75]);
     log.word(0x0298, 1 << 4);
-    let diffuse = |c: f32, scene: f32| scene * 0.25 + scene + 0.5 + c;
-    near(log.run(&inputs).diffuse, [diffuse(r, 0.125), diffuse(g, 0.25), diffuse(b, 0.0), a]);
+    let diffuse = |c: f32, scene: f32| scene + 0.5 + c;
+    near_words(log.run(&inputs).diffuse, [diffuse(r, 0.125), diffuse(g, 0.25), diffuse(b, 0.0), a]);
     log.word(0x0298, 1).floats(0x03a8, &[1.0; 3]);
     let emission = |c: f32, scene: f32| scene + c + 1.5;
-    near(log.run(&inputs).diffuse, [emission(r, 0.125), emission(g, 0.25), emission(b, 0.0), 0.75]);
+    near_words(log.run(&inputs).diffuse, [emission(r, 0.125), emission(g, 0.25), emission(b, 0.0), 0.75]);
     assert_eq!(log.word(0x0298, 3).read().unknown, [(0x0298, 3)]);
 }
 
@@ -204,8 +214,8 @@ fn one_point_light() {
     log.floats(0x10a4, &[3.0]).floats(0x10dc, &[0.0, 0.0, 5.0]).floats(0x10e8, &[1.0, 0.5, 0.5]);
     let inputs = at([0.0, 0.0, 2.0], [0.0, 0.0, 1.0]);
     // 1 + 3 / 2 + 9 / 2 = 7.
-    near(log.run(&inputs).diffuse, [0.125 + 1.0 / 7.0, 0.25 + 1.0 / 7.0, 1.0 / 7.0, 0.75]);
-    near(log.floats(0x10a4, &[2.9]).run(&inputs).diffuse, [0.125, 0.25, 0.0, 0.75]);
+    near_words(log.run(&inputs).diffuse, [0.125 + 1.0 / 7.0, 0.25 + 1.0 / 7.0, 1.0 / 7.0, 0.75]);
+    near_words(log.floats(0x10a4, &[2.9]).run(&inputs).diffuse, [0.125, 0.25, 0.0, 0.75]);
 }
 
 /// A cone with cosines 0.8 inside and 0.6 outside, whose share is linear or bent between them.
@@ -222,11 +232,11 @@ fn spotlight() {
         log.run(&inputs).diffuse[2]
     };
     for (cosine, expected) in [(1.0, 1.0), (0.9, 1.0), (0.75, 0.75), (0.7, 0.5), (0.65, 0.25), (0.55, 0.0)] {
-        assert!((share(cosine) - expected).abs() < 1e-5, "{cosine} {}", share(cosine));
+        assert!((share(cosine) - expected).abs() < 1e-3, "{cosine} {}", share(cosine));
     }
     log.floats(0x1040, &[0.0, -0.494_592, 1.494_592]);
     let inputs = at([-0.714_142_8, 0.0, 0.3], [0.714_142_8, 0.0, 0.7]);
-    assert!((log.run(&inputs).diffuse[2] - 0.5 / (1.494_592 - 0.247_296)).abs() < 1e-5);
+    assert!((log.run(&inputs).diffuse[2] - 0.5 / (1.494_592 - 0.247_296)).abs() < 1e-3);
 }
 
 #[test]
@@ -238,20 +248,20 @@ fn highlights() {
     let inputs = at([0.0, 0.0, -2.0], [0.0, 0.0, 1.0]);
     // Far light, far eye: x = 0.8 gives 0.3 / 0.9.
     let lit = log.run(&inputs);
-    near(lit.specular, [1.0 / 3.0, 1.0 / 6.0, 0.0, 1.0]);
-    near(lit.diffuse, [0.125, 0.25, 0.0, 0.75]);
+    near_words(lit.specular, [1.0 / 3.0, 1.0 / 6.0, 0.0, 1.0]);
+    near_words(lit.diffuse, [0.125, 0.25, 0.0, 0.75]);
     // An eye at the origin looks straight down: h = (0, 0, 2), x = 1, f = 0.5 / 0.5.
     log.word(0x0294, 1 | 1 << 16).floats(0x0a50, &[0.0; 3]);
-    near(log.run(&inputs).specular, [1.0, 0.5, 0.0, 1.0]);
+    near_words(log.run(&inputs).specular, [1.0, 0.5, 0.0, 1.0]);
     // Together with the primary colour, the secondary is the vertex's.
     log.word(0x0294, 1 << 16 | 1 << 17);
     let lit = log.run(&inputs);
-    near(lit.diffuse, [1.125, 0.75, 0.0, 0.75]);
+    near_words(lit.diffuse, [1.125, 0.75, 0.0, 0.75]);
     assert_eq!(lit.specular, inputs[4]);
     // A point light and a far eye use the eye's direction: h = (0, 0, 1) + (0.6, 0, 0.8), x = 1.8^2 / 3.6 = 0.9.
     log.word(0x0294, 1).word(0x03bc, 2).floats(0x17e0, &[0.6, 0.0, 0.8]);
     log.floats(0x1024, &[9.0]).floats(0x105c, &[0.0, 0.0, 5.0]).floats(0x1068, &[1.0, 0.0, 0.0]);
-    near(log.run(&inputs).specular, [0.4 / 0.7, 0.2 / 0.7, 0.0, 1.0]);
+    near_words(log.run(&inputs).specular, [0.4 / 0.7, 0.2 / 0.7, 0.0, 1.0]);
 }
 
 #[test]
@@ -259,10 +269,10 @@ fn both_sides() {
     let mut log = Log::new();
     log.lit(1).floats(0x1000, &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0]).floats(0x1034, &[0.0, 0.0, 1.0]);
     log.word(0x17c4, 1).floats(0x17a0, &[0.5, 0.0, 0.0]).floats(0x17ac, &[0.25, 0.0, 0.0, 0.0]);
-    log.floats(0x0c00, &[0.0, 0.0, 0.0, 0.0, 0.5, 1.0]);
+    log.floats(0x0c00, &[0.0, 0.0, 0.0, 0.0, 0.5, 1.0, 0.0, 0.0, 0.0]).floats(0x1e28, &[0.0; 6]);
     let away = log.run(&at([0.0; 3], [0.0, 0.6, -0.8]));
-    near(away.diffuse, [0.125, 0.25, 0.0, 0.75]);
-    near(away.back_diffuse, [0.5, 0.4, 0.8, 0.25]);
+    near_words(away.diffuse, [0.125, 0.25, 0.0, 0.75]);
+    near_words(away.back_diffuse, [0.5, 0.4, 0.8, 0.25]);
 }
 
 /// The numbers of TSH-11's example.
