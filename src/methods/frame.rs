@@ -1,14 +1,16 @@
 //! Frames: the draws and clears between two flips, as a scene.
 
+mod refused;
+
 use std::collections::HashMap;
 use std::ops::Range;
 
-use ninebit::plan::{Plan, PlanError, PlanOptions};
+use ninebit::plan::{Plan, PlanOptions};
 use ninebit::raster::depth;
 use ninebit::rop;
 use ninebit::state::{
-    Buffer, DepthBuffer, Draw, Named, Palette, Rectangle, Scene, ShaderOperation, SurfaceFormat, TEXTURE_UNITS, Target,
-    Texture, TextureFormat, TextureImage, TextureKind, TextureUnit, VertexDepths,
+    Buffer, DepthBuffer, Draw, Named, Palette, Rectangle, Scene, ShaderOperation, TEXTURE_UNITS, Target, Texture,
+    TextureFormat, TextureImage, TextureKind, TextureUnit, VertexDepths,
 };
 use ninebit_scene::clear::Clear;
 
@@ -436,7 +438,7 @@ impl Builder {
         let name = if gap.is_some() { format!("{name}, not recorded") } else { name };
         let image_of = TextureImage::Texels(texels);
         let texture = Texture { name, kind: image.kind, format: image.format, image: image_of };
-        if let Some(message) = refusal(view.family(), &texture) {
+        if let Some(message) = refused::refusal(view.family(), &texture) {
             view.note(Gap::NotModelled(message));
             return None;
         }
@@ -491,53 +493,10 @@ impl Builder {
         }
         while !scene.targets.is_empty() && !scene.draws.is_empty() {
             let Err(errors) = Plan::compile(&scene, &PlanOptions::default()) else { break };
-            if !leave_out(&mut scene, &mut drawn, &errors) {
+            if !refused::leave_out(&mut scene, &mut drawn, &errors) {
                 break;
             }
         }
         Frame { number, scene, drawn, held }
     }
-}
-
-/// Returns why a chip does not have a texture. Kelvin's formats are all the model's.
-fn refusal(family: Family, texture: &Texture) -> Option<String> {
-    if family == Family::Kelvin {
-        return None;
-    }
-    let targets = vec![Target::new(1, 1, SurfaceFormat::A8R8G8B8)];
-    let scene = Scene { profile: family.profile(), targets, textures: vec![texture.clone()], ..Scene::default() };
-    let errors = Plan::compile(&scene, &PlanOptions::default()).err()?;
-    errors.into_iter().next().map(|error| error.message)
-}
-
-/// Removes the draws that errors name, and notes the errors. Returns whether there are any.
-fn leave_out(scene: &mut Scene, drawn: &mut [Operation], errors: &[PlanError]) -> bool {
-    let mut refused: Vec<usize> = errors.iter().filter_map(|error| error.draw).collect();
-    refused.sort_unstable();
-    refused.dedup();
-    if refused.is_empty() {
-        // The scene as a whole is too large.
-        let message = errors.first().map_or_else(String::new, |error| error.message.clone());
-        for entry in drawn.iter_mut() {
-            entry.draw = None;
-            entry.gaps.push(Gap::TooMany(message.clone()));
-        }
-        scene.draws.clear();
-        return true;
-    }
-    for index in refused.into_iter().rev() {
-        scene.draws.remove(index);
-        for entry in drawn.iter_mut() {
-            match entry.draw {
-                Some(at) if at == index => {
-                    entry.draw = None;
-                    let of_draw = errors.iter().filter(|error| error.draw == Some(index));
-                    entry.gaps.extend(of_draw.map(|error| Gap::NotModelled(error.message.clone())));
-                }
-                Some(at) if at > index => entry.draw = Some(at - 1),
-                _ => {}
-            }
-        }
-    }
-    true
 }
