@@ -5,7 +5,6 @@ mod refused;
 use std::collections::HashMap;
 use std::ops::Range;
 
-use ninebit::plan::{Plan, PlanOptions};
 use ninebit::raster::depth;
 use ninebit::rop;
 use ninebit::state::{
@@ -491,12 +490,7 @@ impl Builder {
                 draw.scissor = None;
             }
         }
-        while !scene.targets.is_empty() && !scene.draws.is_empty() {
-            let Err(errors) = Plan::compile(&scene, &PlanOptions::default()) else { break };
-            if !refused::leave_out(&mut scene, &mut drawn, &errors) {
-                break;
-            }
-        }
+        refused::leave_all_out(&mut scene, &mut drawn);
         Frame { number, scene, drawn, held }
     }
 }

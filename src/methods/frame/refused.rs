@@ -18,8 +18,18 @@ pub(super) fn refusal(family: Family, texture: &Texture) -> Option<String> {
     errors.into_iter().next().map(|error| error.message)
 }
 
+/// Removes the draws that the model refuses, and notes why.
+pub(super) fn leave_all_out(scene: &mut Scene, drawn: &mut [Operation]) {
+    while !scene.targets.is_empty() && !scene.draws.is_empty() {
+        let Err(errors) = Plan::compile(scene, &PlanOptions::default()) else { break };
+        if !leave_out(scene, drawn, &errors) {
+            break;
+        }
+    }
+}
+
 /// Removes the draws that errors name, and notes the errors. Returns whether there are any.
-pub(super) fn leave_out(scene: &mut Scene, drawn: &mut [Operation], errors: &[PlanError]) -> bool {
+fn leave_out(scene: &mut Scene, drawn: &mut [Operation], errors: &[PlanError]) -> bool {
     let mut refused: Vec<usize> = errors.iter().filter_map(|error| error.draw).collect();
     refused.sort_unstable();
     refused.dedup();
