@@ -119,7 +119,7 @@ fn dependent_reads_with_levels_are_those_of_the_definition() {
     let (mut pixels, mut defined) = (0, 0);
     for round in 0..42 {
         let (small, squares) = (round % 2 == 0, round % 4 == 1);
-        let count = if small { 96 } else { 3 };
+        let count = if small { 256 } else { 3 };
         let mut vertices: Vec<Vertex> = (0..count).flat_map(|_| triangle(&mut random, small)).collect();
         if squares {
             vertices = (0..4).flat_map(|_| square(&mut random, 64.0)).collect();
