@@ -9,7 +9,7 @@
 //! ```
 //!
 //! The text is generic over [`Number`]. [`Binary`] is the definition, in integers; `f64` holds every number exactly, so
-//! that loops over it are the fast engine's ([`doubles`](super::doubles)); [`Real`] cuts nothing and is the ideal.
+//! that loops over it are the fast engine's (`doubles`); [`Real`] cuts nothing and is the ideal.
 
 use super::binary::Binary;
 use crate::number::{Choice, Integer, LEAST_TOP};

@@ -12,7 +12,7 @@
 //! cone         the same function of s l + s', at most 1, with the words of the falloff, 0 if s l + s' is negative
 //! ```
 //!
-//! Distances and directions are the transform unit's (VTX-5), all else is in words of [`light`].
+//! Distances and directions are the transform unit's (VTX-5), all else is in words of [`number::light`](crate::number::light).
 
 use super::unit::{self, words};
 use crate::number::light::{ONE, SIGN, dot, product, reciprocal, single_product, single_sum, sum, word};
