@@ -88,7 +88,7 @@ pub fn reciprocal(x: u32) -> u32 {
         return 0;
     }
     let first = (1 << 14) / middle(x);
-    let second = ((1 << 21) - first * mantissa(x)) * first >> 14;
+    let second = (((1 << 21) - first * mantissa(x)) * first) >> 14;
     finite(x & SIGN, second, 253 - exponent(x) + 1)
 }
 

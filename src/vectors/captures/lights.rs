@@ -118,7 +118,7 @@ pub(super) fn ranges(frames: &mut Frames) {
 
 /// The normals of the corners of quads, clockwise from the upper left.
 pub(super) const TILTED: [[f32; 3]; 4] = {
-    let (side, front) = (0.099_014_755, -0.990_147_54);
+    let (side, front) = (0.099_014_75, -0.990_147_54);
     [[-side, -side, front], [side, -side, front], [side, side, front], [-side, side, front]]
 };
 

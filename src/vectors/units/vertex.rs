@@ -16,7 +16,7 @@ fn words<const N: usize>(names: [&str; N]) -> [Column; N] {
 
 /// Returns columns of three floats for each name.
 fn vectors<const N: usize>(names: [&str; N]) -> Vec<Column> {
-    names.iter().flat_map(|name| channels(name, ["x", "y", "z"], &|name: &str| Column::word(name, 32))).collect()
+    names.iter().flat_map(|name| channels(name, ["x", "y", "z"], |name: &str| Column::word(name, 32))).collect()
 }
 
 /// The arithmetic of the transform unit.
