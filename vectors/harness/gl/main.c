@@ -261,6 +261,21 @@ static int names_between(const char *text, const char *before, const char *after
     return count;
 }
 
+/* Names in the lines `scene NAME` of a list. */
+static int names_of_scenes(const char *text, char (*names)[64], int most)
+{
+    int count = 0;
+    while (text && *text && count < most) {
+        size_t length = strcspn(text, "\n");
+        if (strncmp(text, "scene ", 6) == 0 && length > 6 && length < 66) {
+            memcpy(names[count], text + 6, length - 6);
+            names[count++][length - 6] = '\0';
+        }
+        text += length + (text[length] == '\n');
+    }
+    return count;
+}
+
 static int draw_scene(const char *pack, const char *folder, const char *name)
 {
     char message[256];
@@ -303,7 +318,7 @@ static int run_all(const char *pack, const char *folder)
     sprintf(path, "%.900s/scenes/scenes.txt", pack);
     list = read_file(path, &length);
     unit_count = names_between(manifest, "\"units/", ".gpu.txt\"", units, FILES / 2);
-    scene_count = list ? names_between(list, "scene ", "\n", scenes, FILES / 2) : 0;
+    scene_count = names_of_scenes(list, scenes, FILES / 2);
     free(manifest);
     free(list);
     for (n = 0; n < scene_count; n++) {
