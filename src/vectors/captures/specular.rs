@@ -67,15 +67,20 @@ fn rows(
     }
 }
 
+/// Returns the frames of the flags of control: their names, their lights, and whether they are lit at all.
+fn controls(lamp: Lamp) -> [(&'static str, Vec<Lamp>, bool); 3] {
+    [
+        ("ControlFlagsLightDisable_FF", vec![], false),
+        ("ControlFlagsNoLight_FF", vec![], true),
+        ("ControlFlags_FF", vec![lamp], true),
+    ]
+}
+
 /// Adds the frames of Specular that the fixed function draws.
 pub(super) fn fronts(frames: &mut Frames) {
     let light = directional([1.0, 0.0, 1.0]);
     let colors = [[0.0, 0.0, 0.05], [0.25, 0.0, 0.0], [0.0, 0.2, 0.4]];
-    for (name, lamps, is_lit) in [
-        ("ControlFlagsLightDisable_FF", vec![], false),
-        ("ControlFlagsNoLight_FF", vec![], true),
-        ("ControlFlags_FF", vec![(light, colors)], true),
-    ] {
+    for (name, lamps, is_lit) in controls((light, colors)) {
         frames.paint(name, 0xfe32_3232, move |canvas| {
             background(canvas, [0xff20_2020, 0xff00_0000], 14);
             let inverse = inverse();
@@ -141,11 +146,7 @@ pub(super) fn backs(frames: &mut Frames) {
     let normals = [[-0.1, 0.05], [0.1, 0.05], [0.1, -0.05], [-0.1, -0.05]].map(|[x, y]| normalized([x, y, 0.85]));
     // The back is lit with the front's colours of the vertex.
     let given = [[0.0, 1.0, 0.5, 1.0], [0.0, 0.0, 1.0, 0.33]];
-    for (name, lamps, is_lit) in [
-        ("ControlFlagsLightDisable_FF", vec![], false),
-        ("ControlFlagsNoLight_FF", vec![], true),
-        ("ControlFlags_FF", vec![(light, colors)], true),
-    ] {
+    for (name, lamps, is_lit) in controls((light, colors)) {
         frames.paint(name, 0xfe32_3232, move |canvas| {
             background(canvas, [0xff90_9090, 0xff20_2020], 14);
             let inverse = inverse();

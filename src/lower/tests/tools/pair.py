@@ -4,16 +4,10 @@ import os
 import moderngl
 import numpy
 
+from draws import take
+
 context = moderngl.create_context(standalone=True, require=430, backend="egl", libgl="libGL.so.1", libegl="libEGL.so.1")
 fetches = "GL_EXT_shader_framebuffer_fetch" in context.extensions and "NINEBIT_COPIES" not in os.environ
-given = numpy.fromfile("draws.bin", "<u4")
-at = 0
-
-
-def take(count):
-    global at
-    at += count
-    return given[at - count : at]
 
 
 def define(text, *names):

@@ -5,17 +5,9 @@ import numpy
 import wgpu
 from wgpu.utils.device import get_default_device
 
+from draws import take
+
 device = get_default_device()
-given = numpy.fromfile("draws.bin", "<u4")
-at = 0
-
-
-def take(count):
-    global at
-    at += count
-    return given[at - count : at]
-
-
 STORAGE = wgpu.BufferUsage.STORAGE | wgpu.BufferUsage.COPY_SRC
 targets, draws = take(2)
 surfaces = []
