@@ -33,12 +33,6 @@ impl Failure {
         Failure::Message { code: None, exit: 2, message: message.into(), help: help.into() }
     }
 
-    /// Returns the failure for draws of which no whole pixel is printed.
-    pub(crate) fn refused(message: String) -> Failure {
-        let help = "`--fallback cpu` has them drawn by the CPU".to_string();
-        Failure::Message { code: Some("NB0543"), exit: 3, message, help }
-    }
-
     /// Returns the failure for a machine without a suitable adapter.
     pub(crate) fn no_adapter(message: String) -> Failure {
         let help = "install a Vulkan driver: Debian's `mesa-vulkan-drivers` has one that runs on the CPU".to_string();

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand};
 use cpu_time::ProcessTime;
 use ninebit::engine::{RenderOptions, Renderer as Engine, render};
 use ninebit::limits::Limits;
@@ -79,18 +79,9 @@ struct Drawing {
     /// The adapter: its number, or a part of its name [default: the first that `adapters` lists]
     #[arg(long, value_name = "NAME|INDEX")]
     adapter: Option<String>,
-    /// What draws the draws that are not printed; without it they are refused
-    #[arg(long, value_enum)]
-    fallback: Option<Fallback>,
     /// Choose an alternative of a rule; `ninebit policies` lists them
     #[arg(long = "policy", value_name = "RULE=VALUE")]
     policies: Vec<String>,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Fallback {
-    /// Our engine, on this machine's CPU
-    Cpu,
 }
 
 impl Drawing {
@@ -112,15 +103,6 @@ impl Drawing {
         say(&loaded.render_warnings(false));
         loaded.affordable(Limits::default().shaded_pixels)?;
         Ok((loaded.scene, loaded.plan.under(policies)))
-    }
-
-    /// Prepares a plan, and says what our engine draws.
-    fn renderer<'a>(&self, gpu: &'a Gpu, scene: &Scene, plan: &'a Plan) -> Result<Renderer<'a>, Failure> {
-        let renderer = Renderer::new(gpu, scene, plan, self.fallback.is_some())?;
-        for draw in &renderer.fallbacks {
-            say(&format!("note: {draw}: drawn by the CPU\n"));
-        }
-        Ok(renderer)
     }
 }
 
@@ -175,7 +157,7 @@ fn picture(path: &Path, output: &OsStr, target: Option<&str>, drawing: &Drawing)
         Failure::usage(message, format!("the scene has {}", names.join(", ")))
     })?;
     let gpu = drawing.open()?;
-    let renderer = drawing.renderer(&gpu, &scene, &plan)?;
+    let renderer = Renderer::new(&gpu, &scene, &plan)?;
     renderer.draw()?;
     let surface = &renderer.frames()?.surfaces[index];
     let png = encode_png(surface.width, surface.height, &surface.rgba8(), Compression::Fast)?;
@@ -192,7 +174,7 @@ fn bench(scenes: &[PathBuf], frames: u32, threads: u16, drawing: &Drawing) -> Re
     for path in &self::scenes(scenes) {
         let (scene, plan) = drawing.load(path)?;
         let started = Instant::now();
-        let renderer = drawing.renderer(&gpu, &scene, &plan)?;
+        let renderer = Renderer::new(&gpu, &scene, &plan)?;
         // The driver compiles at the first frame.
         renderer.draw()?;
         let set_up = started.elapsed();
@@ -269,7 +251,7 @@ fn replay(places: &[PathBuf], drawing: &Drawing) -> Result<(), Failure> {
 /// Draws a scene twice. Returns what differs.
 fn compared(path: &Path, gpu: &Gpu, drawing: &Drawing) -> Result<Option<String>, Failure> {
     let (scene, plan) = drawing.load(path)?;
-    let renderer = drawing.renderer(gpu, &scene, &plan)?;
+    let renderer = Renderer::new(gpu, &scene, &plan)?;
     renderer.draw()?;
     Ok(difference(
         &plan,

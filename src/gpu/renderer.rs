@@ -1,11 +1,10 @@
 //! Draws a plan on a GPU.
 
-use std::borrow::Cow;
 use std::collections::HashMap;
 
-use ninebit::engine::{RenderOptions, Renderer as Engine, TextureWords, cleared};
+use ninebit::engine::{TextureWords, cleared};
 use ninebit::frame::Frames;
-use ninebit::plan::{Plan, PlanOptions, PlannedDraw};
+use ninebit::plan::{Plan, PlannedDraw};
 use ninebit::shown;
 use ninebit::state::{Named as _, Scene, TextureImage};
 use ninebit_lower::{Function, Options, Setup};
@@ -89,13 +88,15 @@ struct Dispatch {
 /// The pipeline of a draw, and that for tiles which a triangle covers.
 type Pipelines = [wgpu::ComputePipeline; 2];
 
-/// How a draw is drawn.
+/// The work of a draw.
 #[derive(Debug)]
-enum Work {
-    /// By its shader.
-    Shader { pipelines: Pipelines, memory: wgpu::Buffer, sampled: Vec<Sampled>, batches: Vec<Batch> },
-    /// By our engine, alone.
-    Engine(Box<Plan>),
+struct Work {
+    /// Number of the draw.
+    draw: usize,
+    pipelines: Pipelines,
+    memory: wgpu::Buffer,
+    sampled: Vec<Sampled>,
+    batches: Vec<Batch>,
 }
 
 /// A plan that is ready to be drawn on a GPU, any number of times.
@@ -106,8 +107,6 @@ pub struct Renderer<'a> {
     cleared: Frames,
     targets: Vec<Target>,
     works: Vec<Work>,
-    /// Draws that our engine draws, each with the states that are not printed.
-    pub fallbacks: Vec<String>,
 }
 
 /// Makes the works of draws.
@@ -123,11 +122,11 @@ struct Builder<'a> {
 }
 
 impl<'a> Renderer<'a> {
-    /// Prints the shaders of a scene's draws, compiles them and fills buffers. Draws that are not printed are left to our engine if `falls_back`.
+    /// Prints the shaders of a scene's draws, compiles them and fills buffers.
     ///
     /// # Errors
-    /// Draws that are not printed; limits of the adapter; what its driver says.
-    pub fn new(gpu: &'a Gpu, scene: &Scene, plan: &'a Plan, falls_back: bool) -> Result<Renderer<'a>, Failure> {
+    /// Limits of the adapter; what its driver says.
+    pub fn new(gpu: &'a Gpu, scene: &Scene, plan: &'a Plan) -> Result<Renderer<'a>, Failure> {
         let cleared = cleared(plan);
         let mut targets = Vec::new();
         for surface in &cleared.surfaces {
@@ -139,32 +138,16 @@ impl<'a> Renderer<'a> {
             let [first_words, first_depths] = both.map(|(what, of)| gpu.buffer(what, of, BufferUsages::COPY_SRC));
             targets.push(Target { held: [words?, depths?], cleared: [first_words?, first_depths?] });
         }
-        let (mut works, mut fallbacks, mut refused) = (Vec::new(), Vec::new(), Vec::new());
+        let mut works = Vec::new();
         let layout = layout(gpu);
         let (pipelines, tiles) = (HashMap::new(), TILES);
         let mut builder = Builder { gpu, plan, cleared: &cleared, targets: &targets, layout, pipelines, tiles };
         let options = Options { policies: plan.policies, ..Options::default() };
         for (number, draw) in plan.draws().iter().enumerate() {
-            match Function::of_pixel(scene, plan, number, &options) {
-                Ok(function) => works.extend(builder.shader(number, draw, &function)?),
-                Err(refusals) => {
-                    let states: Vec<&str> = refusals.iter().map(|refusal| refusal.name()).collect();
-                    let name = shown::name(&scene.draws[number].name);
-                    let text = format!("draw {number} `{name}` has {}", states.join(" and "));
-                    if falls_back {
-                        works.push(Work::Engine(Box::new(alone(scene, plan, number)?)));
-                        fallbacks.push(text);
-                    } else {
-                        refused.push(text + ", of which no whole pixel is printed");
-                    }
-                }
-            }
-        }
-        if !refused.is_empty() {
-            return Err(Failure::refused(refused.join("\n")));
+            works.extend(builder.shader(number, draw, &Function::of_pixel(scene, plan, number, &options))?);
         }
         gpu.wait()?;
-        Ok(Renderer { gpu, plan, cleared, targets, works, fallbacks })
+        Ok(Renderer { gpu, plan, cleared, targets, works })
     }
 
     /// Clears the targets and draws everything.
@@ -179,40 +162,26 @@ impl<'a> Renderer<'a> {
                 encoder.copy_buffer_to_buffer(cleared, 0, held, 0, held.size());
             }
         }
-        for (draw, work) in self.works.iter().enumerate() {
-            match work {
-                Work::Shader { pipelines, memory, sampled, batches } => {
-                    for of in sampled {
-                        let held = &self.targets[of.target].held[usize::from(of.is_depth)];
-                        if of.is_same {
-                            encoder.copy_buffer_to_buffer(held, 0, memory, of.at, held.size());
-                            continue;
-                        }
-                        gpu.queue.submit([std::mem::replace(&mut encoder, gpu.encoder()).finish()]);
-                        let frames = self.frames()?;
-                        let words = TextureWords::new(self.plan, &self.plan.draws()[draw..=draw], &frames.surfaces);
-                        let texels = memories(&self.plan.draws()[draw], &words);
-                        gpu.queue.write_buffer(memory, of.at, bytemuck::cast_slice(&texels[of.unit]));
-                    }
-                    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-                    for batch in batches {
-                        for Dispatch { offset, tiles, is_full } in &batch.dispatches {
-                            pass.set_pipeline(&pipelines[usize::from(*is_full)]);
-                            pass.set_bind_group(0, &batch.group, &[*offset]);
-                            pass.dispatch_workgroups((*tiles).min(DISPATCH_ROW), tiles.div_ceil(DISPATCH_ROW), 1);
-                        }
-                    }
+        for Work { draw, pipelines, memory, sampled, batches } in &self.works {
+            let draw = *draw;
+            for of in sampled {
+                let held = &self.targets[of.target].held[usize::from(of.is_depth)];
+                if of.is_same {
+                    encoder.copy_buffer_to_buffer(held, 0, memory, of.at, held.size());
+                    continue;
                 }
-                Work::Engine(plan) => {
-                    gpu.queue.submit([std::mem::replace(&mut encoder, gpu.encoder()).finish()]);
-                    let mut frames = self.frames()?;
-                    Engine::new(plan, &RenderOptions::default()).redraw(&mut frames);
-                    for (target, surface) in self.targets.iter().zip(&frames.surfaces) {
-                        gpu.queue.write_buffer(&target.held[0], 0, bytemuck::cast_slice(&surface.words));
-                        if !surface.depth.is_empty() {
-                            gpu.queue.write_buffer(&target.held[1], 0, bytemuck::cast_slice(&surface.depth));
-                        }
-                    }
+                gpu.queue.submit([std::mem::replace(&mut encoder, gpu.encoder()).finish()]);
+                let frames = self.frames()?;
+                let words = TextureWords::new(self.plan, &self.plan.draws()[draw..=draw], &frames.surfaces);
+                let texels = words.memories(&self.plan.draws()[draw]);
+                gpu.queue.write_buffer(memory, of.at, bytemuck::cast_slice(&texels[of.unit]));
+            }
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            for batch in batches {
+                for Dispatch { offset, tiles, is_full } in &batch.dispatches {
+                    pass.set_pipeline(&pipelines[usize::from(*is_full)]);
+                    pass.set_bind_group(0, &batch.group, &[*offset]);
+                    pass.dispatch_workgroups((*tiles).min(DISPATCH_ROW), tiles.div_ceil(DISPATCH_ROW), 1);
                 }
             }
         }
@@ -254,7 +223,7 @@ impl Builder<'_> {
         let memory = self.gpu.buffer(&format!("the textures of draw {number}"), &words, usage)?;
         let shared = Shared { number, draw, way, length: length(&fields), memory, bases };
         let batches = groups.iter().map(|bins| self.batch(&shared, bins)).collect::<Result<Vec<_>, _>>()?;
-        Ok(Some(Work::Shader { pipelines, memory: shared.memory, sampled, batches }))
+        Ok(Some(Work { draw: number, pipelines, memory: shared.memory, sampled, batches }))
     }
 
     /// Compiles a shader, unless another draw has the same.
@@ -294,7 +263,7 @@ impl Builder<'_> {
     fn memory(&self, number: usize, draw: &PlannedDraw) -> Result<Memory, Failure> {
         let mut memory = Memory::default();
         let words = TextureWords::new(self.plan, &self.plan.draws()[number..=number], &self.cleared.surfaces);
-        for (unit, texels) in memories(draw, &words).iter().enumerate() {
+        for (unit, texels) in words.memories(draw).iter().enumerate() {
             let at = memory.words.len();
             memory.bases[unit] = u32::try_from(at)
                 .map_err(|_| Failure::limit(format!("the textures of draw {number} have 2^32 texels or more")))?;
@@ -381,23 +350,4 @@ fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     };
     let entries = [0, 1, 2, 3, 4, 5].map(entry);
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries })
-}
-
-/// Returns the words that each unit of a draw reads: one for each texel.
-fn memories<'w>(draw: &PlannedDraw, words: &'w TextureWords<'_>) -> [Cow<'w, [u32]>; 4] {
-    let mut memories = [0; 4].map(|_| Cow::Borrowed(&[][..]));
-    for unit in &draw.units {
-        memories[unit.index] = unit.texel_words(words.words(unit.state.texture));
-    }
-    memories
-}
-
-/// Plans one draw of a scene by itself.
-fn alone(scene: &Scene, plan: &Plan, number: usize) -> Result<Plan, Failure> {
-    let mut scene = scene.clone();
-    scene.draws = vec![scene.draws.swap_remove(number)];
-    Plan::compile(&scene, &PlanOptions { policies: plan.policies, ..PlanOptions::default() }).map_err(|errors| {
-        let message = errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
-        Failure::Message { code: Some("NB0322"), exit: 3, message, help: "`ninebit check` says where".to_string() }
-    })
 }

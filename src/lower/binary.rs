@@ -103,6 +103,11 @@ impl<'a> Called<'a> {
         }
     }
 
+    /// DEP-6: returns 1 less two weights, cut.
+    pub(crate) fn cut_rest(code: &'a Code, a: Called<'a>, b: Called<'a>) -> Called<'a> {
+        Called::from_line(code, call(code, Helper::CutRest, &[a.operand(code), b.operand(code)]))
+    }
+
     /// Returns two factors of the number.
     fn factors(self, code: &'a Code) -> [Operand; 2] {
         match self {

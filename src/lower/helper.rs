@@ -1,12 +1,13 @@
 //! Helpers: functions that a printed text calls. Each is a piece of the rules, which the model computes and the printer reads.
 
-use ninebit::number::Integer;
+use ninebit::number::{Integer, newton_root};
 use ninebit::raster::binary::Binary;
 use ninebit::raster::depth;
 use ninebit::raster::interpolate::{FARTHEST, face_coordinate, ratio};
+use ninebit::raster::stroke::sprite_coordinate;
 use ninebit::raster::weights::{Linear, Number as _};
 use ninebit::texture::coordinates::quad_ratio;
-use ninebit::texture::lod;
+use ninebit::texture::{lod, shader, single};
 
 use crate::input::Local;
 use crate::kind::{ANY_BINARY, EXPONENT, Kind, MANTISSA, Range, packed, unpacked};
@@ -55,6 +56,28 @@ pub enum Helper {
     Level,
     /// A binary32 number, of which bits are given.
     Split,
+    /// The binary32 number nearest to a number.
+    Rounded,
+    /// A product of binary32 numbers.
+    SingleProduct,
+    /// A sum of binary32 numbers.
+    SingleSum,
+    /// A quotient of whole numbers in binary32.
+    SingleQuotient,
+    /// A displaced coordinate.
+    Moved,
+    /// A binary32 number as a coordinate.
+    Float,
+    /// The same for distant numbers.
+    FarFloat,
+    /// A channel times a luminance.
+    Luminance,
+    /// A place in a point.
+    Sprite,
+    /// 1 less two weights of a w buffer.
+    CutRest,
+    /// The root of a whole number.
+    Root,
 }
 
 /// A parameter or a result.
@@ -74,12 +97,15 @@ const fn number(low: i64, high: i64) -> (Kind, Range) {
 /// Largest size of an image, and the one of coordinates in texels.
 const SIZE: (Kind, Range) = number(1, 4096);
 
+/// The bits of a binary32 number.
+const BITS: (Kind, Range) = number(0, u32::MAX as i64);
+
 /// Limits of quads: distant coordinates, with half an image.
 const FAR: i64 = FARTHEST + (1 << 32);
 
 impl Helper {
     /// All helpers, in the order of the variants.
-    pub(crate) const ALL: [Helper; 21] = [
+    pub(crate) const ALL: [Helper; 32] = [
         Helper::Cut(Sign::Positive),
         Helper::Product(Sign::Positive),
         Helper::Sum(Sign::Positive),
@@ -101,6 +127,17 @@ impl Helper {
         Helper::FarFace,
         Helper::Level,
         Helper::Split,
+        Helper::Rounded,
+        Helper::SingleProduct,
+        Helper::SingleSum,
+        Helper::SingleQuotient,
+        Helper::Moved,
+        Helper::Float,
+        Helper::FarFloat,
+        Helper::Luminance,
+        Helper::Sprite,
+        Helper::CutRest,
+        Helper::Root,
     ];
 
     /// Returns the name in printed text, without its prefix; what it is; the rules.
@@ -133,6 +170,19 @@ impl Helper {
                 ("level", "floor(256 log2) of the larger distance from (a, b) to (c, d) or (e, f)", "TEX-10")
             }
             Helper::Split => ("split", "the binary32 number of these bits", "WGT-1"),
+            Helper::Rounded => ("rounded", "the bits of the binary32 number nearest to a", "TSH-4"),
+            Helper::SingleProduct => ("single_product", "a b of binary32 numbers, all as bits", "TSH-4"),
+            Helper::SingleSum => ("single_sum", "a + b of binary32 numbers, all as bits", "TSH-4"),
+            Helper::SingleQuotient => ("single_quotient", "the bits of a / b in binary32", "TSH-1"),
+            Helper::Moved => ("moved", "floor(size (a + offset / 128) 2^power), up to a limit", "TSH-7"),
+            Helper::Float => ("float", "floor(size f 2^8), up to a limit; 0 for a NaN", "TSH-4"),
+            Helper::FarFloat => ("far_float", "floor(size f 2^16), up to a limit; 0 for a NaN", "TSH-4, TEX-11"),
+            Helper::Sprite => {
+                ("sprite", "floor(2^power size (1/2 + d / 2 width)), late where right of the centre", "PNT-2")
+            }
+            Helper::CutRest => ("cut_rest", "1 - a - b to its first 24 bits", "DEP-6"),
+            Helper::Root => ("root", "floor(sqrt(n))", "TEX-17"),
+            Helper::Luminance => ("luminance", "floor(4096 c/255 (red/255 a + b)), up to 2^20", "TSH-8"),
         }
     }
 
@@ -143,11 +193,15 @@ impl Helper {
         const COORDINATE: (Kind, Range) = number(-FAR, FAR);
         const FLOOR: [(Kind, Range); 4] = [BINARY, SIZE, number(0, 16), number(0, 1 << 24)];
         const FAR_FLOOR: [(Kind, Range); 4] = [BINARY, SIZE, number(0, 16), number(0, FARTHEST)];
-        const BITS: (Kind, Range) = number(0, u32::MAX as i64);
+        const QUOTIENT: [(Kind, Range); 2] = [number(-(1 << 16), 1 << 16), number(1, 1 << 30)];
+        const MOVED: [(Kind, Range); 5] = [BINARY, BITS, SIZE, number(0, 16), number(0, FARTHEST)];
+        const ROOT: [(Kind, Range); 1] = [number(0, 1 << 60)];
+        const SPRITE: [(Kind, Range); 4] = [number(-(1 << 17), 1 << 17), number(0, 511), SIZE, number(0, 16)];
+        const LUMINANCE: [(Kind, Range); 4] = [number(-256, 255), number(0, 255), BINARY, BINARY];
         match self {
             Helper::Cut(Sign::Positive) => &[COVERED],
             Helper::Cut(Sign::Any) => &[EDGE],
-            Helper::Product(_) | Helper::Rest(_) => &[BINARY; 2],
+            Helper::Product(_) | Helper::Rest(_) | Helper::CutRest => &[BINARY; 2],
             Helper::Sum(_) => &[BINARY; 3],
             Helper::Reciprocal(_) | Helper::Exponent => &[BINARY],
             Helper::Linear => &[BINARY; 5],
@@ -157,6 +211,14 @@ impl Helper {
             Helper::Ratio | Helper::FarRatio | Helper::Face | Helper::FarFace => &[BINARY, BINARY, SIZE],
             Helper::Level => &[COORDINATE; 6],
             Helper::Split => &[BITS],
+            Helper::Rounded => &[BINARY],
+            Helper::SingleProduct | Helper::SingleSum => &[BITS; 2],
+            Helper::SingleQuotient => &QUOTIENT,
+            Helper::Moved => &MOVED,
+            Helper::Float | Helper::FarFloat => &[BITS, SIZE],
+            Helper::Luminance => &LUMINANCE,
+            Helper::Sprite => &SPRITE,
+            Helper::Root => &ROOT,
         }
     }
 
@@ -172,10 +234,14 @@ impl Helper {
     pub(crate) fn range(self) -> Range {
         match self {
             Helper::Exponent => EXPONENT,
-            Helper::Floor | Helper::Ratio | Helper::Face => (-(1 << 24), 1 << 24),
-            Helper::FarFloor | Helper::FarRatio => (-FARTHEST, FARTHEST),
+            Helper::Floor | Helper::Ratio | Helper::Face | Helper::Float => (-(1 << 24), 1 << 24),
+            Helper::FarFloor | Helper::FarRatio | Helper::Moved | Helper::FarFloat => (-FARTHEST, FARTHEST),
             Helper::FarFace => (-FAR, FAR),
             Helper::Level => (lod::LEAST.into(), 1 << 15),
+            Helper::Rounded | Helper::SingleProduct | Helper::SingleSum | Helper::SingleQuotient => BITS.1,
+            Helper::Luminance => (0, 1 << 20),
+            Helper::Sprite => (-(1 << 48), 1 << 48),
+            Helper::Root => (0, 1 << 30),
             _ => ANY_BINARY,
         }
     }
@@ -197,6 +263,17 @@ impl Helper {
             Helper::Linear => Linear { first: a(1), second: a(2), third: a(4) }.at([a(0), a(0), a(3)]),
             Helper::Depth => depth::sum_of_products([[a(0), a(1)], [a(2), a(3)], [a(4), a(5)]]),
             Helper::Split => Binary::from_bits(n(0)),
+            Helper::Rounded => return Value::Number(single::rounded(a(0))),
+            Helper::SingleProduct => return Value::Number(single::product(n(0), n(1))),
+            Helper::SingleSum => return Value::Number(single::sum(n(0), n(1))),
+            Helper::SingleQuotient => return Value::Number(single::quotient(n(0), n(1))),
+            Helper::Moved => return Value::Number(shader::moved(a(0), n(1), n(2), n(3), n(4))),
+            Helper::Float => return Value::Number(shader::coordinate(n(0), n(1))),
+            Helper::FarFloat => return Value::Number(shader::quad_coordinate(n(0), n(1))),
+            Helper::Luminance => return Value::Number(shader::luminance(n(0), n(1), [a(2), a(3)])),
+            Helper::Sprite => return Value::Number(sprite_coordinate(n(0), n(1), n(2), n(3))),
+            Helper::CutRest => depth::cut_rest(a(0), a(1)),
+            Helper::Root => return Value::Number(newton_root(n(0))),
             Helper::Exponent => return Value::Number(a(0).exponent()),
             Helper::Floor => return Value::Number(a(0).floored(n(1), n(2), n(3))),
             Helper::FarFloor => return Value::Number(a(0).far_floored(n(1), n(2), n(3))),
@@ -233,7 +310,7 @@ impl Helper {
             Helper::Reciprocal(Sign::Positive) => (1, i32::MAX.into()),
             Helper::Reciprocal(Sign::Any) => MANTISSA,
             Helper::Rest(Sign::Positive) => (0, 1 << 24),
-            Helper::Rest(Sign::Any) => (-(1 << 24), 1 << 24),
+            Helper::Rest(Sign::Any) | Helper::CutRest => (-(1 << 24), 1 << 24),
             Helper::Product(Sign::Positive) | Helper::Sum(Sign::Positive) => (0, 1 << 29),
             Helper::Linear | Helper::Depth | Helper::Product(_) | Helper::Sum(_) | Helper::Exponent => {
                 (-(1 << 29), 1 << 29)
@@ -245,9 +322,14 @@ impl Helper {
     /// Returns a parameter of the printed function.
     pub(crate) fn parameter(self, at: usize, kind: Kind, range: Range) -> Local {
         let name = match (self, at) {
-            (Helper::Cut(_), _) => "n",
+            (Helper::Cut(_) | Helper::Root, _) => "n",
             (Helper::Floor | Helper::FarFloor, 1..) => ["", "size", "power", "limit"][at],
             (Helper::Ratio | Helper::FarRatio | Helper::Face | Helper::FarFace, 2) => "size",
+            (Helper::Moved, 1..) => ["", "offset", "size", "power", "limit"][at],
+            (Helper::Float | Helper::FarFloat, _) => ["f", "size"][at],
+            (Helper::Sprite, _) => ["d", "width", "size", "power"][at],
+            (Helper::Luminance, 0 | 1) => ["c", "red"][at],
+            (Helper::Luminance, _) => ["a", "b"][at - 2],
             _ => ["a", "b", "c", "d", "e", "f"][at],
         };
         Local { name, kind, range }

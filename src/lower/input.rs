@@ -77,9 +77,6 @@ pub enum Weight {
 }
 
 impl Weight {
-    /// All weights, in the order of the variants.
-    pub(crate) const ALL: [Weight; 5] = [Weight::U, Weight::V, Weight::NextU, Weight::NextV, Weight::Level];
-
     /// Returns the name of the weight in ports.
     pub(crate) fn name(self) -> &'static str {
         ["u", "v", "next_u", "next_v", "level"][self as usize]

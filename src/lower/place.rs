@@ -1,19 +1,23 @@
 //! Where a unit samples its texture, and what it reads there.
 
-use ninebit::number::{Integer, Register as _};
+use ninebit::number::{Blend as _, Integer, Register as _};
 use ninebit::raster::binary::Binary;
 use ninebit::raster::depth;
+use ninebit::raster::interpolate::FARTHEST;
+use ninebit::raster::stroke::Figure;
 use ninebit::state::*;
 use ninebit::texture::address::{shows_border_color, texel_index};
+use ninebit::texture::anisotropy::{Pairs, pairs};
 use ninebit::texture::cube::{Face, major_axis};
 use ninebit::texture::filter;
 use ninebit::texture::lod::{self, Selection};
 use ninebit::texture::planned::PlannedUnit;
+use ninebit::texture::shader;
 
 use crate::binary::{Called, counted};
 use crate::code::{Code, Operand, Operation};
 use crate::helper::Helper;
-use crate::input::Weight;
+use crate::input::{Input, Weight};
 use crate::number::{Number, Word};
 use crate::texel::{Sampler, Texels};
 use crate::triangle::Field;
@@ -43,13 +47,31 @@ impl Projection {
     }
 }
 
+/// The coordinates at which a unit samples.
+#[derive(Clone, Copy)]
+pub(crate) enum Place<'a> {
+    /// Its own.
+    Own(Projection),
+    /// Its own s and t, displaced by 128ths of the image, patterns of binary32 (TSH-7).
+    Moved([Number<'a>; 2]),
+    /// Two bytes (TSH-6).
+    Bytes([Number<'a>; 2], DependentScale),
+    /// Two results of the dot unit, patterns of binary32 (TSH-4).
+    Floats([Number<'a>; 2]),
+    /// A direction that the dot unit computed (TSH-4, TSH-5).
+    Vector([Called<'a>; 3]),
+}
+
 /// A unit at a pixel.
 pub(crate) struct Unit<'a, 's, 'w> {
     whole: &'w Whole<'a, 's>,
     unit: &'s PlannedUnit,
-    projection: Projection,
     sample: &'w Sample<'a>,
-    pixel: (Number<'a>, Number<'a>),
+    place: Place<'a>,
+    /// The first pixel of the quad.
+    quad: [Number<'a>; 2],
+    /// Returns the coordinates at another sample.
+    elsewhere: &'w dyn Fn(&Sample<'a>) -> Place<'a>,
 }
 
 /// A direction on a face: sc, tc, |ma|.
@@ -103,20 +125,36 @@ struct Levels<'a> {
 }
 
 impl<'a, 's, 'w> Unit<'a, 's, 'w> {
+    /// Returns a unit that samples where `elsewhere` says.
     pub(crate) fn new(
         whole: &'w Whole<'a, 's>,
         unit: &'s PlannedUnit,
         sample: &'w Sample<'a>,
-        pixel: (Number<'a>, Number<'a>),
+        quad: [Number<'a>; 2],
+        elsewhere: &'w dyn Fn(&Sample<'a>) -> Place<'a>,
     ) -> Unit<'a, 's, 'w> {
-        Unit { whole, unit, projection: Projection::new(whole, unit), sample, pixel }
+        Unit::at(whole, unit, (sample, elsewhere(sample)), quad, elsewhere)
+    }
+
+    /// Returns a unit whose place at a sample is known.
+    pub(crate) fn at(
+        whole: &'w Whole<'a, 's>,
+        unit: &'s PlannedUnit,
+        (sample, place): (&'w Sample<'a>, Place<'a>),
+        quad: [Number<'a>; 2],
+        elsewhere: &'w dyn Fn(&Sample<'a>) -> Place<'a>,
+    ) -> Unit<'a, 's, 'w> {
+        Unit { whole, unit, sample, place, quad, elsewhere }
     }
 
     /// Returns the value of the register that the unit loads, and whether the fragment is dropped.
     pub(crate) fn register(&self) -> ([Number<'a>; 4], Truth<'a>) {
         let (code, sampler) = (self.whole.code, Sampler::new(self.unit));
-        let facing = (self.projection == Projection::Direction).then(|| self.facing(self.direction(self.sample)));
+        let facing = self.direction(self.place, self.sample).map(|direction| self.facing(direction));
         let (image, beyond) = self.image(facing);
+        if self.unit.state.anisotropy > 1 {
+            return (sampler.loaded(self.taps(&sampler, (image, beyond)), code), Truth::Known(false));
+        }
         let levels = self.levels(&sampler);
         let footprint = |level: Number<'a>| self.footprint(level, levels.is_linear, (image, beyond), facing);
         let first = footprint(levels.first);
@@ -129,8 +167,35 @@ impl<'a, 's, 'w> Unit<'a, 's, 'w> {
         if sampler.has_next() {
             read.levels.push(footprint(levels.next));
         }
-        let border = self.unit.state.border_color.map(|byte| Number::Constant(byte.into()));
-        sampler.register(border, &read, code)
+        sampler.register(self.border(), &read, code)
+    }
+
+    fn border(&self) -> [Number<'a>; 4] {
+        self.unit.state.border_color.map(|byte| Number::Constant(byte.into()))
+    }
+
+    /// TEX-17: filters each tap of a footprint on level 0, and returns the lanes of their weighted sum.
+    fn taps(&self, sampler: &Sampler<'_>, image: (Number<'a>, Truth<'a>)) -> [Number<'a>; 4] {
+        let (code, limit) = (self.whole.code, self.unit.state.anisotropy);
+        let (quad, behind) = self.coordinates_of_quad();
+        code.by("TEX-17");
+        let Pairs { offsets, weights, .. } = pairs(quad, limit);
+        let sides = self.unit.scale(&self.unit.levels[0]);
+        let at = self.coordinates(sides.map(|side| Number::Constant(side.into())), None);
+        let is_linear = Truth::Known(sampler.is_linear());
+        let mut sum = [Number::ZERO; 4];
+        for pair in 0..limit as usize / 2 {
+            let weight = Number::Constant(if pair == 0 { 128 } else { 0 }).or(behind, weights[pair]).within(0, 128);
+            let offset = offsets[pair].map(|offset| Number::ZERO.or(behind, offset).within(-(1 << 22), 1 << 22));
+            for tap in [[at[0] + offset[0], at[1] + offset[1]], [at[0] - offset[0], at[1] - offset[1]]] {
+                let footprint = self.footprint_at(Number::ZERO, is_linear, image, tap);
+                let read = Read { levels: vec![footprint], weight: Number::ZERO };
+                let lanes = sampler.filtered(0, self.border(), &read, code);
+                code.by("TEX-17");
+                sum = [0, 1, 2, 3].map(|lane: usize| sum[lane] + lanes[lane].times(weight));
+            }
+        }
+        sum.map(|lane| lane.round8().within(-(1 << 15), (1 << 16) - 1))
     }
 
     fn component(&self, sample: &Sample<'a>, n: usize) -> Called<'a> {
@@ -138,8 +203,13 @@ impl<'a, 's, 'w> Unit<'a, 's, 'w> {
         of.at(sample.b)
     }
 
-    fn direction(&self, sample: &Sample<'a>) -> [Called<'a>; 3] {
-        [0, 1, 2].map(|n| self.component(sample, n))
+    /// Returns the direction into a cube map.
+    fn direction(&self, place: Place<'a>, sample: &Sample<'a>) -> Option<[Called<'a>; 3]> {
+        match place {
+            Place::Own(Projection::Direction) => Some([0, 1, 2].map(|n| self.component(sample, n))),
+            Place::Vector(vector) => Some(vector),
+            _ => None,
+        }
     }
 
     /// TEX-12: returns the face that a direction meets.
@@ -189,9 +259,10 @@ impl<'a, 's, 'w> Unit<'a, 's, 'w> {
             return (Number::ZERO, Truth::Known(false));
         }
         let (r, layers) = (self.component(self.sample, 2), Number::Constant(self.unit.layers.into()));
-        let w = match self.projection {
-            Projection::Ratio => self.ratio(r, self.component(self.sample, 3), layers),
-            _ => self.floored(r, layers),
+        let w = match self.place {
+            Place::Own(Projection::Ratio) => self.ratio(r, self.component(self.sample, 3), layers),
+            Place::Own(_) => self.floored(r, layers),
+            _ => Number::ZERO,
         };
         self.whole.code.by("VOL-1");
         self.addressed(self.unit.state.address_r, filter::nearest(w), layers, false, words)
@@ -235,19 +306,73 @@ impl<'a, 's, 'w> Unit<'a, 's, 'w> {
                 uv[axis]
             })
         };
-        if let Some(facing) = facing {
-            let [s, t, m] = self.on_face(self.direction(self.sample), facing).map(|n| n.operand(code));
+        let (place, sample) = (self.place, self.sample);
+        if let (Some(facing), Some(direction)) = (facing, self.direction(place, sample)) {
+            let [s, t, m] = self.on_face(direction, facing).map(|n| n.operand(code));
             let of = |n: Operand, size: Number<'a>| counted(code, Helper::Face, &[n, m, size.operand()]);
             return named([of(s, sides[0]), of(t, sides[1])]);
         }
-        let at = [0, 1].map(|n| self.component(self.sample, n));
-        match self.projection {
-            Projection::Ratio => {
-                let q = self.component(self.sample, 3);
-                named([0, 1].map(|n: usize| self.ratio(at[n], q, sides[n])))
+        let at = |n: usize| self.component(sample, n);
+        let own = |n: usize| match place {
+            Place::Own(Projection::Ratio) => self.ratio(at(n), self.component(sample, 3), sides[n]),
+            Place::Moved(offsets) => self.moved(at(n), offsets[n], sides[n].operand(), (8, 1 << 24)),
+            Place::Bytes(bytes, scale) => {
+                code.by("TSH-6");
+                shader::dependent(bytes[n], sides[n], scale)
             }
-            _ => named([0, 1].map(|n: usize| self.floored(at[n], sides[n]))),
+            Place::Floats(floats) => counted(code, Helper::Float, &[floats[n].operand(), sides[n].operand()]),
+            Place::Own(_) | Place::Vector(_) => self.floored(at(n), sides[n]),
+        };
+        let pixel = [Input::X, Input::Y].map(|input| self.whole.input(input));
+        let sides = sides.map(Number::operand);
+        named([0, 1].map(|n: usize| self.of_figure((n, pixel[n]), (sides[n], 8), || own(n))))
+    }
+
+    /// Returns a coordinate in a point at a column or a row, or what else a figure has, in 2^-`power` texel.
+    fn of_figure(
+        &self,
+        (axis, pixel): (usize, Number<'a>),
+        (side, power): (Operand, i64),
+        other: impl FnOnce() -> Number<'a>,
+    ) -> Number<'a> {
+        match self.is_point() {
+            Truth::Known(false) => other(),
+            // Only points are drawn, or some other figures too.
+            Truth::Known(true) => self.of_point(axis, pixel, side, power),
+            is_point => self.of_point(axis, pixel, side, power).or(is_point, other()),
         }
+    }
+
+    /// Returns whether the figure is a point that gives the unit coordinates.
+    fn is_point(&self) -> Truth<'a> {
+        let draw = self.whole.planned;
+        if !(draw.point_sprite && self.unit.index == SPRITE_UNIT) {
+            return Truth::Known(false);
+        }
+        let triangles = &draw.assembly.triangles;
+        let is_point = |n: usize| triangles.figure(n) == Figure::Point;
+        match ((0..triangles.len()).any(is_point), (0..triangles.len()).all(is_point)) {
+            (false, _) => Truth::Known(false),
+            (true, true) => Truth::Known(true),
+            (true, false) => !self.whole.input(Input::Triangle(Field::SpriteSize)).is_negative(),
+        }
+    }
+
+    /// PNT-2: returns a coordinate in a point at a column or a row, in 2^-`power` texel.
+    fn of_point(&self, axis: usize, pixel: Number<'a>, side: Operand, power: i64) -> Number<'a> {
+        let (code, field) = (self.whole.code, |field| self.whole.input(Input::Triangle(field)));
+        code.by("PNT-2");
+        let distance = pixel * Number::Constant(16) + Number::Constant(8) - field(Field::Sprite(axis));
+        let size = Number::greatest(field(Field::SpriteSize), Number::ZERO);
+        let of = [distance.operand(), size.operand(), side, Operand::Constant(power)];
+        counted(code, Helper::Sprite, &of)
+    }
+
+    /// TSH-7: returns a coordinate that is displaced, in 2^-`power` texel.
+    fn moved(&self, value: Called<'a>, offset: Number<'a>, side: Operand, (power, limit): (i64, i64)) -> Number<'a> {
+        let code = self.whole.code;
+        let of = [value.operand(code), offset.operand(), side, Operand::Constant(power), Operand::Constant(limit)];
+        counted(code, Helper::Moved, &of)
     }
 
     /// TEX-9 to TEX-11: chooses filter and levels.
@@ -277,44 +402,57 @@ impl<'a, 's, 'w> Unit<'a, 's, 'w> {
 
     /// TEX-10, TEX-11: returns the lod of the pixel's quad.
     fn log2_ratio(&self) -> Number<'a> {
+        let (quad, behind) = self.coordinates_of_quad();
+        let log = counted(
+            self.whole.code,
+            Helper::Level,
+            &quad.as_flattened().iter().map(|n| n.operand()).collect::<Vec<_>>(),
+        );
+        Number::Constant(lod::LEAST.into()).or(behind, log)
+    }
+
+    /// TEX-11: returns u and v of the quad's pixels in 1/65536 texel of level 0, and whether one of them lies behind the viewer.
+    fn coordinates_of_quad(&self) -> ([[Number<'a>; 2]; 3], Truth<'a>) {
         let (code, one) = (self.whole.code, Number::Constant(1));
-        let (x, y) = (self.pixel.0.masked(4094), self.pixel.1.masked(4094));
+        let [x, y] = self.quad;
         let sides = self.unit.scale(&self.unit.levels[0]).map(|side| Operand::Constant(side.into()));
-        let samples = [(x, y), (x + one, y), (x, y + one)].map(|(x, y)| self.whole.sample_at(x, y));
-        let facing = (self.projection == Projection::Direction).then(|| self.facing(self.direction(&samples[0])));
+        let pixels = [[x, y], [x + one, y], [x, y + one]];
+        let samples = pixels.map(|[x, y]| self.whole.sample_at(x, y));
+        let places = samples.each_ref().map(|sample| (self.elsewhere)(sample));
+        let facing = self.direction(places[0], &samples[0]).map(|direction| self.facing(direction));
         let mut behind = Truth::Known(false);
         let is_positive = |n: Called<'a>| Number::ZERO.is_below(n.parts(code, crate::code::MANTISSA).mantissa);
-        let quad = samples.map(|sample| {
+        let quad = [0, 1, 2].map(|n: usize| {
+            let (sample, place, pixel) = (&samples[n], places[n], pixels[n]);
             code.by("TEX-11");
             behind = behind | !is_positive(sample.sum);
-            let (divisor, at) = match facing {
-                Some(facing) => {
-                    let [s, t, m] = self.on_face(self.direction(&sample), facing);
-                    (Some(m), [s, t])
+            if let (Some(facing), Some(direction)) = (facing, self.direction(place, sample)) {
+                let [s, t, m] = self.on_face(direction, facing);
+                behind = behind | !is_positive(m);
+                let at = [s, t].map(|n| n.operand(code));
+                return [0, 1].map(|n: usize| counted(code, Helper::FarFace, &[at[n], m.operand(code), sides[n]]));
+            }
+            let q = (matches!(place, Place::Own(Projection::Ratio))).then(|| self.component(sample, 3));
+            if let Some(q) = q {
+                behind = behind | (!is_positive(q) & !self.is_point());
+            }
+            let at = |n: usize| self.component(sample, n);
+            let own = |n: usize| match (place, q) {
+                (_, Some(q)) => counted(code, Helper::FarRatio, &[at(n).operand(code), q.operand(code), sides[n]]),
+                (Place::Moved(offsets), _) => self.moved(at(n), offsets[n], sides[n], (16, FARTHEST)),
+                (Place::Bytes(bytes, scale), _) => {
+                    code.by("TSH-6");
+                    shader::dependent(bytes[n], Number::new(code, sides[n]).up(Number::Constant(8)), scale)
                 }
-                None => {
-                    let q = (self.projection == Projection::Ratio).then(|| self.component(&sample, 3));
-                    (q, [0, 1].map(|n| self.component(&sample, n)))
+                (Place::Floats(floats), _) => counted(code, Helper::FarFloat, &[floats[n].operand(), sides[n]]),
+                (Place::Own(_) | Place::Vector(_), _) => {
+                    let limit = Operand::Constant(FARTHEST);
+                    counted(code, Helper::FarFloor, &[at(n).operand(code), sides[n], Operand::Constant(16), limit])
                 }
             };
-            if let Some(divisor) = divisor {
-                behind = behind | !is_positive(divisor);
-            }
-            [0, 1].map(|n: usize| {
-                let at = at[n].operand(code);
-                match divisor.map(|divisor| divisor.operand(code)) {
-                    None => {
-                        let limit = Operand::Constant(ninebit::raster::interpolate::FARTHEST);
-                        counted(code, Helper::FarFloor, &[at, sides[n], Operand::Constant(16), limit])
-                    }
-                    Some(m) if facing.is_some() => counted(code, Helper::FarFace, &[at, m, sides[n]]),
-                    Some(q) => counted(code, Helper::FarRatio, &[at, q, sides[n]]),
-                }
-            })
+            [0, 1].map(|n: usize| self.of_figure((n, pixel[n]), (sides[n], 16), || own(n)))
         });
-        let [[a, b], [c, d], [e, f]] = quad.map(|at| at.map(Number::operand));
-        let log = counted(code, Helper::Level, &[a, b, c, d, e, f]);
-        Number::Constant(lod::LEAST.into()).or(behind, log)
+        (quad, behind)
     }
 
     /// Returns the number that a level has, of those of all levels.
@@ -334,17 +472,30 @@ impl<'a, 's, 'w> Unit<'a, 's, 'w> {
         &self,
         level: Number<'a>,
         is_linear: Truth<'a>,
-        (image, beyond): (Number<'a>, Truth<'a>),
+        image: (Number<'a>, Truth<'a>),
         facing: Option<Facing<'a>>,
     ) -> Footprint<'a> {
-        let (unit, code) = (self.unit, self.whole.code);
+        let unit = self.unit;
         let level = level.within(0, unit.levels.len() as i64 - 1);
+        let width = self.by_level(level, |n| unit.levels[n].width.into());
+        let height = self.by_level(level, |n| unit.levels[n].height.into());
+        let sides = if unit.kind == TextureKind::Rectangle { [Number::Constant(1); 2] } else { [width, height] };
+        self.footprint_at(level, is_linear, image, self.coordinates(sides, facing))
+    }
+
+    /// Returns what is read on a level at u and v.
+    fn footprint_at(
+        &self,
+        level: Number<'a>,
+        is_linear: Truth<'a>,
+        (image, beyond): (Number<'a>, Truth<'a>),
+        [u, v]: [Number<'a>; 2],
+    ) -> Footprint<'a> {
+        let (unit, code) = (self.unit, self.whole.code);
         let (offsets, _) = unit.texel_layout();
         let width = self.by_level(level, |n| unit.levels[n].width.into());
         let height = self.by_level(level, |n| unit.levels[n].height.into());
         let first = image + self.by_level(level, |n| offsets[n] as i64);
-        let sides = if unit.kind == TextureKind::Rectangle { [Number::Constant(1); 2] } else { [width, height] };
-        let [u, v] = self.coordinates(sides, facing);
         code.by("TEX-6");
         let axis = |at: Number<'a>, mode: AddressMode, size: Number<'a>| {
             // A single texel is that of a footprint half a texel further, with weights 0.
@@ -377,13 +528,14 @@ impl<'a, 's, 'w> Unit<'a, 's, 'w> {
     fn compared(&self, shadow: ShadowComparison, word: Number<'a>) -> Truth<'a> {
         let code = self.whole.code;
         let zero = Binary::whole(Number::ZERO);
-        let reference = match shadow.reference {
-            ShadowReference::Zero => zero,
-            ShadowReference::R => {
-                let parts = |n: usize| self.component(self.sample, n).parts(code, (-(1 << 26), 1 << 26));
+        let parts = |n: usize| self.component(self.sample, n).parts(code, (-(1 << 26), 1 << 26));
+        let reference = match (shadow.reference, self.place) {
+            (ShadowReference::R, Place::Own(projection)) => {
+                let (r, q) = (parts(2), (projection == Projection::Ratio).then(|| parts(3)));
                 code.by("SHD-1");
-                if self.projection == Projection::Ratio { parts(2).positive_ratio(parts(3)) } else { parts(2) }
+                q.map_or(r, |q| r.positive_ratio(q))
             }
+            _ => zero,
         };
         let format = self.unit.format.depth().unwrap_or(DepthFormat::Z16);
         let reference = depth::stored(format, reference);

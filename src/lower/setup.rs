@@ -10,9 +10,8 @@ use ninebit::raster::fog;
 use ninebit::raster::setup::{EdgeFunctions, edge_function, is_inside};
 use ninebit::raster::stroke::Figure;
 use ninebit::raster::weights::{Linear, ratios};
-use ninebit::state::{CompareFunction, Profile};
+use ninebit::state::{CompareFunction, Profile, ShaderOperation};
 use ninebit::texture::coordinates::wrapped;
-use ninebit::texture::planned::PlannedUnit;
 
 use crate::binary::{Called, call};
 use crate::code::{Code, Line, Operand, Operation, Test, run, value_of};
@@ -38,8 +37,8 @@ impl Setup {
         let code = Code::default();
         let reader = Reader { code: &code, profile: plan.profile, draw };
         let fields = function.inputs().into_iter().filter_map(|input| match input {
-            // The offset of DEP-5 is its caller's.
-            Input::Triangle(Field::Offset | Field::OffsetExponent) => None,
+            // The offset of DEP-5 is its caller's, and so are points.
+            Input::Triangle(Field::Offset | Field::OffsetExponent | Field::Sprite(_) | Field::SpriteSize) => None,
             Input::Triangle(field) => Some(field),
             _ => None,
         });
@@ -60,6 +59,10 @@ impl Setup {
         let offset = context.depth.offset;
         constants.insert(Field::Offset, offset.mantissa);
         constants.insert(Field::OffsetExponent, if offset.mantissa == 0 { 0 } else { offset.exponent });
+        let [x, y] = context.positions()[1].map(i64::from);
+        let is_point = context.triangle.figure() == Figure::Point;
+        let size = if is_point { context.draw.assembly.size_of(context.number).into() } else { -1 };
+        constants.extend([(Field::Sprite(0), x), (Field::Sprite(1), y), (Field::SpriteSize, size)]);
         if context.triangle.figure() != Figure::Triangle {
             // Lines and points are set up otherwise.
             for (k, [a, b, c]) in context.triangle.edge_functions().into_iter().enumerate() {
@@ -84,8 +87,16 @@ impl Attribute {
             Attribute::Color(set, channel) => context.colors()[set][k][channel].into(),
             Attribute::Coordinate(n, component) => {
                 let unit = context.draw.units.iter().find(|unit| unit.index == n);
-                let set = |unit: &PlannedUnit| wrapped(unit, vertices.coordinates(unit.stage.coordinate_set));
-                unit.map_or(0, |unit| bits(set(unit)[k][component]))
+                let stage = context.draw.shader.as_ref().map(|shader| shader.stages[n].state);
+                let set = match (unit, stage) {
+                    // Only what a unit samples at its own coordinates is wrapped.
+                    (_, Some(stage)) if stage.operation != ShaderOperation::Sample => {
+                        vertices.coordinates(stage.coordinate_set)
+                    }
+                    (Some(unit), _) => wrapped(unit, vertices.coordinates(unit.stage.coordinate_set)),
+                    (None, _) => return 0,
+                };
+                bits(set[k][component])
             }
             Attribute::Fog => {
                 let fog = vertices.fog()[k];
@@ -165,14 +176,24 @@ impl<'a> Reader<'a, '_> {
             Field::Coordinate(unit, component, part) => self.linear(Attribute::Coordinate(unit, component), part),
             Field::Fog(part) => self.linear(Attribute::Fog, part),
             Field::FogByte => self.fog_byte(),
-            Field::Depth(k) => self.number(self.input(k, Attribute::Z)).operand(self.code),
+            Field::Depth(k) => self.number(self.input(k, self.depth())).operand(self.code),
             Field::DepthDifference(reference, k) => {
                 self.code.by("DEP-1");
-                let [z, from] = [k, reference].map(|k| self.input(k, Attribute::Z));
+                let [z, from] = [k, reference].map(|k| self.input(k, self.depth()));
                 self.number(self.difference(z, from)).operand(self.code)
             }
-            Field::Offset | Field::OffsetExponent => Operand::Constant(0),
+            Field::DepthRatio(k) => {
+                self.code.by("DEP-6");
+                ratios(self.inputs(Attribute::W).map(|w| self.number(w)))[k].operand(self.code)
+            }
+            Field::Offset | Field::OffsetExponent | Field::Sprite(_) | Field::SpriteSize => Operand::Constant(0),
         }
+    }
+
+    /// Returns what the depth buffer holds of vertices.
+    fn depth(&self) -> Attribute {
+        let has_w = self.draw.depth_test.as_ref().is_some_and(|test| test.w_buffer);
+        if has_w { Attribute::W } else { Attribute::Z }
     }
 
     fn edges(&self) -> EdgeFunctions<Number<'a>> {

@@ -83,38 +83,46 @@ impl<'u> Sampler<'u> {
         texels: &impl Texels<'a>,
         code: &'a Code,
     ) -> ([Number<'a>; 4], Truth<'a>) {
-        let weights = Weight::ALL.map(|of| texels.weight(of));
-        let level = |first: usize, [u, v]: [Number<'a>; 2]| {
-            let lanes = |at: usize| {
-                self.lanes(Word(texels.word(first + at)), |code| texels.outside(first + at, code), border, code)
-            };
-            if !self.is_linear() {
-                return lanes(0);
-            }
-            let texels = [0, 1, 2, 3].map(lanes);
-            code.by("TEX-6");
-            [0, 1, 2, 3].map(|lane: usize| {
-                let all = texels.map(|texel| texel[lane]);
-                // A mixture of equal values is that value; this happens in channels that a format does not store.
-                let equal = all.iter().all(|texel| texel.operand() == all[0].operand());
-                if equal { all[0] } else { bilinear(all, u, v, |step| step.between(&all)) }
-            })
-        };
-        let mut lanes = level(0, [weights[0], weights[1]]);
+        let mut lanes = self.filtered(0, border, texels, code);
         if self.has_next() {
-            let next = level(4, [weights[2], weights[3]]);
+            let next = self.filtered(4, border, texels, code);
             code.by("TEX-9");
             lanes = [0, 1, 2, 3].map(|lane: usize| {
                 let equal = lanes[lane].operand() == next[lane].operand();
                 if equal {
                     next[lane]
                 } else {
-                    lerp(lanes[lane], next[lane], weights[4]).between(&[lanes[lane], next[lane]])
+                    lerp(lanes[lane], next[lane], texels.weight(Weight::Level)).between(&[lanes[lane], next[lane]])
                 }
             });
         }
         let (lanes, dropped) = self.keyed(lanes, code);
         (self.loaded(lanes, code), dropped)
+    }
+
+    /// Returns the lanes of a level, whose first texel has the number `first`.
+    pub(crate) fn filtered<'a>(
+        &self,
+        first: usize,
+        border: [Number<'a>; 4],
+        texels: &impl Texels<'a>,
+        code: &'a Code,
+    ) -> [Number<'a>; 4] {
+        let lanes = |at: usize| {
+            self.lanes(Word(texels.word(first + at)), |code| texels.outside(first + at, code), border, code)
+        };
+        if !self.is_linear() {
+            return lanes(0);
+        }
+        let of = if first == 0 { [Weight::U, Weight::V] } else { [Weight::NextU, Weight::NextV] };
+        let ([u, v], texels) = (of.map(|weight| texels.weight(weight)), [0, 1, 2, 3].map(lanes));
+        code.by("TEX-6");
+        [0, 1, 2, 3].map(|lane: usize| {
+            let all = texels.map(|texel| texel[lane]);
+            // A mixture of equal values is that value; this happens in channels that a format does not store.
+            let equal = all.iter().all(|texel| texel.operand() == all[0].operand());
+            if equal { all[0] } else { bilinear(all, u, v, |step| step.between(&all)) }
+        })
     }
 
     /// Returns the register that lanes become.

@@ -39,10 +39,16 @@ pub enum Field {
     Fog(Part),
     /// The fog byte of all pixels, or -1.
     FogByte,
-    /// The depth of a vertex.
+    /// The depth of a vertex; w for a w buffer.
     Depth(usize),
     /// The difference of a vertex's depth from that of another: that one, the vertex.
     DepthDifference(usize, usize),
+    /// Ratio of w of a vertex for a w buffer.
+    DepthRatio(usize),
+    /// Column or row of a point in 1/16 pixel: axis.
+    Sprite(usize),
+    /// Size of a point in 1/8 pixel; -1 for other figures.
+    SpriteSize,
     /// Mantissa of the offset of depths.
     Offset,
     /// Exponent of the offset of depths.
@@ -53,9 +59,12 @@ impl Field {
     /// Returns the kind of the constant.
     pub fn kind(self) -> Kind {
         match self {
-            Field::Ratio(_) | Field::Coordinate(..) | Field::Fog(_) | Field::Depth(_) | Field::DepthDifference(..) => {
-                Kind::Binary
-            }
+            Field::Ratio(_)
+            | Field::Coordinate(..)
+            | Field::Fog(_)
+            | Field::Depth(_)
+            | Field::DepthDifference(..)
+            | Field::DepthRatio(_) => Kind::Binary,
             _ => Kind::Number,
         }
     }
@@ -84,6 +93,9 @@ impl Field {
             Field::Color(set, channel, k) => format!("color[{set}][{channel}][{k}]"),
             Field::Coordinate(unit, component, part) => format!("coordinate[{unit}][{component}][{}]", part as usize),
             Field::Fog(part) => format!("fog[{}]", part as usize),
+            Field::DepthRatio(k) => format!("depth_ratio[{k}]"),
+            Field::Sprite(axis) => format!("sprite[{axis}]"),
+            Field::SpriteSize => "sprite_size".to_string(),
             Field::FogByte => "fog_byte".to_string(),
             Field::Depth(k) => format!("depth[{k}]"),
             Field::DepthDifference(reference, k) => format!("depth_difference[{reference}][{k}]"),
@@ -98,6 +110,8 @@ impl Field {
             Field::Edge(_) => (-(1 << 40), 1 << 40),
             Field::Owns(_) => (0, 1),
             Field::Color(..) => (0, 255),
+            Field::Sprite(_) => (-(1 << 16), 1 << 16),
+            Field::SpriteSize => (-1, 511),
             Field::FogByte => (-1, 255),
             Field::Offset => (-(1 << 62), 1 << 62),
             Field::OffsetExponent => (-2000, 2000),

@@ -2,10 +2,12 @@
 
 use std::ops::{BitAnd, BitOr, BitXor, Not};
 
-use ninebit::number::{Choice, Integer};
+use ninebit::number::{Choice, Integer, newton_root};
 use ninebit::state::CompareFunction;
 
+use crate::binary::counted;
 use crate::code::{Code, Operand, Operation, Table, Test};
+use crate::helper::Helper;
 use crate::number::Number;
 
 /// Truth of a comparison.
@@ -165,6 +167,12 @@ impl<'a> Integer for Number<'a> {
             Truth::Known(true) => self,
             Truth::Known(false) => other,
             Truth::Of(code, test) => self.selected(test, code, other),
+        }
+    }
+    fn root(self) -> Number<'a> {
+        match self.code() {
+            Some(code) => counted(code, Helper::Root, &[self.operand()]),
+            None => Number::Constant(newton_root(self.range().0)),
         }
     }
     fn entry(self, table: &'static [u8]) -> Number<'a> {

@@ -1,40 +1,23 @@
-//! Makes the code of a whole pixel: from its place in a triangle and the memories of textures to the stored words.
+//! Makes the code of what a draw interpolates and tests.
 
 use ninebit::number::convert;
 use ninebit::number::{Integer, Register as _};
-use ninebit::plan::{Plan, PlannedDraw};
+use ninebit::plan::PlannedDraw;
 use ninebit::raster::binary::Binary;
 use ninebit::raster::fog::{self, Curve};
 use ninebit::raster::setup::edge_function;
-use ninebit::raster::stroke::Figure;
 use ninebit::raster::weights::{self, Linear, Number as _};
 use ninebit::raster::{depth, interpolate};
 use ninebit::rop::stencil;
 use ninebit::state::*;
 
-use crate::binary::{Called, counted};
-use crate::code::{Code, Operand, Operation, Test};
-use crate::helper::{Helper, Sign};
+use crate::binary::Called;
+use crate::code::Code;
+use crate::helper::Sign;
 use crate::input::Input;
 use crate::number::{Number, Word};
-use crate::pixel::{Builder, Function, Options, Result, UNBOUND, is_idle, loaded};
-use crate::place::Unit;
 use crate::triangle::{Field, Part};
 use crate::truth::Truth;
-
-named! {
-    /// A state of a draw whose whole pixel is not printed.
-    pub enum Refusal {
-        /// Stages of a texture shader.
-        TextureShader = "a texture shader",
-        /// A filter of several taps.
-        Anisotropy = "anisotropic filtering",
-        /// Points with coordinates of their own.
-        Sprites = "points with coordinates of their own",
-        /// Depths that are w.
-        WBuffer = "a w buffer",
-    }
-}
 
 /// A sample of a triangle.
 #[derive(Clone, Copy)]
@@ -50,7 +33,7 @@ pub(crate) struct Whole<'a, 's> {
     pub(crate) code: &'a Code,
     pub(crate) planned: &'s PlannedDraw,
     /// Whether w of the vertices count.
-    perspective: bool,
+    pub(crate) perspective: bool,
 }
 
 impl<'a> Whole<'a, '_> {
@@ -71,7 +54,7 @@ impl<'a> Whole<'a, '_> {
     }
 
     /// Returns the edge functions at a pixel. They are not negative where the pixel is covered.
-    fn edges(&self, x: Number<'a>, y: Number<'a>, covered: bool) -> [Number<'a>; 3] {
+    pub(crate) fn edges(&self, x: Number<'a>, y: Number<'a>, covered: bool) -> [Number<'a>; 3] {
         self.code.by("RAS-2");
         [0, 1, 2].map(|k: usize| {
             let of = [Field::EdgeX(k), Field::EdgeY(k), Field::Edge(k)].map(|field| self.input(Input::Triangle(field)));
@@ -85,7 +68,7 @@ impl<'a> Whole<'a, '_> {
     }
 
     /// Returns the weights where these are the edge functions.
-    fn sample<const COVERED: bool>(&self, e: [Number<'a>; 3]) -> Sample<'a> {
+    pub(crate) fn sample<const COVERED: bool>(&self, e: [Number<'a>; 3]) -> Sample<'a> {
         self.code.by("WGT-1");
         let ratios =
             self.perspective.then(|| [self.binary(Field::Ratio(0)), Called::ONE, self.binary(Field::Ratio(2))]);
@@ -102,7 +85,7 @@ impl<'a> Whole<'a, '_> {
     }
 
     /// INT-2: returns the primary or the secondary colour.
-    fn color(&self, set: usize, [w0, w2]: [Number<'a>; 2]) -> [Number<'a>; 4] {
+    pub(crate) fn color(&self, set: usize, [w0, w2]: [Number<'a>; 2]) -> [Number<'a>; 4] {
         self.code.by("INT-2");
         [0, 1, 2, 3].map(|channel: usize| {
             let c = [0, 1, 2].map(|k: usize| self.input(Input::Triangle(Field::Color(set, channel, k))));
@@ -114,7 +97,7 @@ impl<'a> Whole<'a, '_> {
     }
 
     /// Returns the fog factor as a byte.
-    fn fog(&self, b: [Called<'a>; 3]) -> Number<'a> {
+    pub(crate) fn fog(&self, b: [Called<'a>; 3]) -> Number<'a> {
         let fog = &self.planned.fog;
         if !fog.enabled {
             // CMB-13: without fog the factor is 1.
@@ -154,15 +137,30 @@ impl<'a> Whole<'a, '_> {
         (0..assembly.triangles.len()).all(|n| assembly.triangle(n).fog().iter().all(|fog| fog.is_finite()))
     }
 
-    /// DEP-1, DEP-3 to DEP-5: returns the depth word, and whether the depth is outside its range.
-    fn depth(&self, test: &DepthTest, e: [Number<'a>; 3]) -> (Number<'a>, Truth<'a>) {
-        let edges = weights::edge_numbers(e.map(|e| Called::whole(self.code, e)), None);
+    /// DEP-1: returns the depth between those of the vertices.
+    fn z_depth(&self, edges: [Called<'a>; 3], e: [Number<'a>; 3]) -> Called<'a> {
+        let edges = weights::edge_numbers(edges, None);
         let shares = weights::shares(edges, Called::sum_of_edges(edges).reciprocal());
         self.code.by("DEP-1");
         let reference = depth::reference_vertex(e);
         let of = |value: &dyn Fn(usize) -> Called<'a>| value(0).or(reference[0], value(1).or(reference[1], value(2)));
         let differences = [0, 1, 2].map(|k: usize| of(&|r| self.binary(Field::DepthDifference(r, k))));
-        let value = depth::sum_of_terms(shares, of(&|r| self.binary(Field::Depth(r))), differences, reference);
+        depth::sum_of_terms(shares, of(&|r| self.binary(Field::Depth(r))), differences, reference)
+    }
+
+    /// DEP-6: returns w between those of the vertices.
+    fn w_depth(&self, edges: [Called<'a>; 3]) -> Called<'a> {
+        self.code.by("DEP-6");
+        let ratios = [self.binary(Field::DepthRatio(0)), Called::ONE, self.binary(Field::DepthRatio(2))];
+        let difference = |k: usize| self.binary(Field::DepthDifference(1, k));
+        let w = Linear { second: self.binary(Field::Depth(1)), first: difference(0), third: difference(2) };
+        depth::w_depth(edges, ratios, w, |a, b| Called::cut_rest(self.code, a, b))
+    }
+
+    /// DEP-1, DEP-3 to DEP-6: returns the depth word, and whether the depth is outside its range.
+    fn depth(&self, test: &DepthTest, e: [Number<'a>; 3]) -> (Number<'a>, Truth<'a>) {
+        let edges = e.map(|e| Called::whole(self.code, e));
+        let value = if test.w_buffer { self.w_depth(edges) } else { self.z_depth(edges, e) };
         let mut value = value.parts(self.code, (-(1 << 31) + 1, (1 << 31) - 1));
         if test.offset != (PolygonOffset { bias: 0.0, factor: 0.0 }) {
             self.code.by("DEP-5");
@@ -184,7 +182,7 @@ impl<'a> Whole<'a, '_> {
     }
 
     /// ROP-1, STN-1, DEP-1, DEP-2: runs the tests in their order after `kept`. Returns whether the fragment is stored, and the new depth and stencil.
-    fn tests(&self, kept: Truth<'a>, e: [Number<'a>; 3]) -> (Truth<'a>, Option<[Number<'a>; 2]>) {
+    pub(crate) fn tests(&self, kept: Truth<'a>, e: [Number<'a>; 3]) -> (Truth<'a>, Option<[Number<'a>; 2]>) {
         let draw = self.planned;
         if draw.depth_test.is_none() && draw.stencil_test.is_none() {
             return (kept, None);
@@ -216,80 +214,4 @@ impl<'a> Whole<'a, '_> {
         }
         (kept & stencil_passed & depth_passed, Some([new_depth, new_stencil]))
     }
-}
-
-impl Function {
-    /// Makes the function of a whole pixel of a draw: `number` of a scene, and of its plan.
-    ///
-    /// # Errors
-    /// The states of the draw that are not printed.
-    pub fn of_pixel(
-        scene: &Scene,
-        plan: &Plan,
-        number: usize,
-        options: &Options,
-    ) -> std::result::Result<Function, Vec<Refusal>> {
-        let (draw, planned) = (&scene.draws[number], &plan.draws()[number]);
-        let refusals = refusals(planned);
-        if !refusals.is_empty() {
-            return Err(refusals);
-        }
-        let code = Code::default();
-        let builder = Builder { code: &code, options: *options };
-        let whole = Whole { code: &code, planned, perspective: planned.perspective };
-        let (x, y) = (whole.input(Input::X), whole.input(Input::Y));
-        let e = whole.edges(x, y, true);
-        let sample = whole.sample::<true>(e);
-        let color_weight = |k: usize, name: &str| {
-            let limit = [1, 8, 256].map(Operand::Constant);
-            let b = sample.b[k].operand(&code);
-            let weight = counted(&code, Helper::Floor, &[b, limit[0], limit[1], limit[2]]).within(0, 256);
-            code.name(weight.operand(), || name.to_string());
-            weight
-        };
-        let [w0, w2] = [color_weight(0, "W0"), color_weight(2, "W2")];
-        let colors = [0, 1].map(|set| whole.color(set, [w0, w2]));
-        let [r, g, b] = draw.fog.color.map(|byte| Number::Constant(byte.into()));
-        let fog = [r, g, b, whole.fog(sample.b)];
-        let mut dropped = Truth::Known(false);
-        let registers = loaded([colors[0], colors[1], fog], |n| {
-            if is_idle(draw, n) {
-                return UNBOUND;
-            }
-            // A unit that is not planned is not read.
-            let Some(unit) = planned.units.iter().find(|unit| unit.index == n) else { return UNBOUND };
-            let (register, drops) = Unit::new(&whole, unit, &sample, (x, y)).register();
-            dropped = dropped | drops;
-            register
-        });
-        let fragment = builder.fragment(&draw.combiners, registers);
-        let alpha = builder.alpha_test(draw, fragment).map_or(Truth::Known(true), |test| Truth::new(&code, test));
-        let never = planned.folded.invisible.is_some();
-        let (stored, new) = whole.tests(alpha & !dropped & Truth::Known(!never), e);
-        let held = Word(whole.input(Input::Held));
-        let word = builder.word(draw, scene.targets[draw.target].format, fragment, held);
-        let depth = new.map(|[depth, stencil]| {
-            code.by("");
-            (depth.word() | stencil.word() << 24).0.operand()
-        });
-        let depth = depth.filter(|depth| code.operation(*depth) != Some(Operation::Input(Input::Depth)));
-        let test = match stored {
-            Truth::Known(false) => Some(Test(CompareFunction::NotEqual, [Operand::Constant(0); 2])),
-            stored => stored.test(),
-        };
-        let result = Result::Pixel { word: word.0.operand(), depth, test };
-        Ok(Function::new(code, result, options))
-    }
-}
-
-/// Returns the states of a draw that are not printed.
-fn refusals(draw: &PlannedDraw) -> Vec<Refusal> {
-    let points = || (0..draw.assembly.triangles.len()).any(|n| draw.assembly.triangles.figure(n) == Figure::Point);
-    let of = [
-        (Refusal::TextureShader, draw.shader.is_some()),
-        (Refusal::Anisotropy, draw.units.iter().any(|unit| unit.state.anisotropy > 1)),
-        (Refusal::Sprites, draw.point_sprite && draw.units.iter().any(|unit| unit.index == SPRITE_UNIT) && points()),
-        (Refusal::WBuffer, draw.depth_test.as_ref().is_some_and(|test| test.w_buffer)),
-    ];
-    of.into_iter().filter(|(_, is_there)| *is_there).map(|(refusal, _)| refusal).collect()
 }

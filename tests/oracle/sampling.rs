@@ -110,7 +110,7 @@ pub fn compared(shadow: ShadowComparison, reference: i128, stored: i128) -> i128
 pub fn taps(corners: [Option<[i128; 2]>; 3], limit: u32) -> Vec<([i128; 2], i128)> {
     let single = vec![([0, 0], 256)];
     let [Some(left), Some(right), Some(lower)] = corners else { return single };
-    let side = |to: [i128; 2]| [0, 1].map(|a| (to[a] - left[a]).clamp(-1 << 40, 1 << 40));
+    let side = |to: [i128; 2]| [0, 1].map(|a| (to[a] - left[a]).clamp(-1 << 29, 1 << 29));
     let length = |[u, v]: [i128; 2]| ((u * u + v * v) as u128).isqrt() as i128;
     let (across, down) = (side(right), side(lower));
     let (axis, l, k) = if length(across) >= length(down) {

@@ -171,19 +171,7 @@ fn whole(
     let plan = compiled(scene, PlanOptions { policies: options.policies, prune: true })?;
     let mut made = Vec::new();
     for (number, draw) in draws {
-        let function = Function::of_pixel(scene, &plan, *number, &options).map_err(|refusals| {
-            let states: Vec<&str> = refusals.iter().map(|refusal| refusal.name()).collect();
-            let message = format!(
-                "draw {number} `{}` has {}, of which no whole pixel is printed",
-                shown::name(&draw.name),
-                states.join(" and ")
-            );
-            Failure::invalid(
-                "NB0543",
-                message,
-                "leave `--whole` out: the function then takes what textures yield; `--draw` chooses other draws",
-            )
-        })?;
+        let function = Function::of_pixel(scene, &plan, *number, &options);
         let setup = Setup::new(&plan, &plan.draws()[*number], &function);
         made.push((*number, shown::name(&draw.name), function, setup));
     }

@@ -222,12 +222,13 @@ struct ninebit_triangle {
     struct ninebit_binary ratio[3];
     struct ninebit_binary coordinate[4][4][3];
     struct ninebit_binary fog[3];
-    struct ninebit_binary depth[3], depth_difference[3][3];
+    struct ninebit_binary depth[3], depth_difference[3][3], depth_ratio[3]; /* of w for a w buffer (DEP-6) */
     int64_t offset;                /* of depths, times 2^offset_exponent (DEP-5): of whoever draws */
     int32_t color[2][4][3];        /* diffuse and specular: channel, vertex */
     int32_t owns[3];               /* 1 where pixels exactly on the edge belong to the triangle (RAS-3) */
     int32_t fog_byte;              /* the fog of all pixels, or -1 (FOG-5) */
     int32_t offset_exponent;
+    int32_t sprite[2], sprite_size; /* of a point: x and y in 1/16 pixel, size in 1/8 pixel (PNT-2), or -1 */
 };
 
 static inline struct ninebit_binary ninebit_binary(int32_t mantissa, int32_t exponent)

@@ -14,7 +14,9 @@ pub(crate) use verilog::port;
 
 use std::collections::BTreeSet;
 
+use ninebit::raster::fog;
 use ninebit::state::{CompareFunction, named};
+use ninebit::texture::dot;
 
 use crate::code::{Kind, Line, Operand, Operation, Range, Table, Test};
 use crate::helper::Helper;
@@ -173,8 +175,18 @@ pub(crate) enum Call {
 }
 
 /// Tables, with their names in printed text.
-pub(crate) const TABLES: [(&str, Table); 2] =
-    [("exponential", Table(&ninebit::raster::fog::EXPONENTIAL)), ("squared", Table(&ninebit::raster::fog::SQUARED))];
+pub(crate) const TABLES: [(&str, Table); 7] = {
+    let [a, b, c, d, e] = &dot::ROOT_BYTES;
+    [
+        ("exponential", Table(&fog::EXPONENTIAL)),
+        ("squared", Table(&fog::SQUARED)),
+        ("root_low", Table(a)),
+        ("root_middle", Table(b)),
+        ("root_high", Table(c)),
+        ("rise_low", Table(d)),
+        ("rise_high", Table(e)),
+    ]
+};
 
 /// A piece of text.
 #[derive(Clone, Debug)]

@@ -19,11 +19,14 @@ struct NinebitTriangle {
     fog: array<vec2<i32>, 3>,
     depth: array<vec2<i32>, 3>,
     depth_difference: array<array<vec2<i32>, 3>, 3>,
+    depth_ratio: array<vec2<i32>, 3>,
     offset: vec2<u32>,
     color: array<array<array<i32, 3>, 4>, 2>,
     owns: array<i32, 3>,
     fog_byte: i32,
     offset_exponent: i32,
+    sprite: array<i32, 2>,
+    sprite_size: i32,
 }
 
 // What the surface and its depth buffer hold after a pixel, and whether the fragment was stored.
@@ -130,11 +133,14 @@ struct NinebitTriangle {
     ivec2 fog[3];
     ivec2 depth[3];
     ivec2 depth_difference[3][3];
+    ivec2 depth_ratio[3];
     uvec2 offset;
     int color[2][4][3];
     int owns[3];
     int fog_byte;
     int offset_exponent;
+    int sprite[2];
+    int sprite_size;
 };
 
 ivec2 ninebit_binary(int mantissa, int exponent) { return ivec2(mantissa, exponent); }

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use crate::plan::{Plan, PlannedDraw};
 use crate::rop::surface;
-use crate::state::{Texture, TextureImage};
+use crate::state::{TEXTURE_UNITS, Texture, TextureImage};
 use crate::texture::planned::Image;
 
 use super::Surface;
@@ -43,6 +43,15 @@ impl<'a> TextureWords<'a> {
     /// Returns the words of one texture.
     pub fn words(&self, texture: usize) -> &[u32] {
         &self.0[texture]
+    }
+
+    /// Returns the memories of a draw's four units, one word a texel, as printed functions read them. Units without a texture have none.
+    pub fn memories<'w>(&'w self, draw: &PlannedDraw) -> [Cow<'w, [u32]>; TEXTURE_UNITS] {
+        let mut memories = [0; TEXTURE_UNITS].map(|_| Cow::Borrowed(&[][..]));
+        for unit in &draw.units {
+            memories[unit.index] = unit.texel_words(self.words(unit.state.texture));
+        }
+        memories
     }
 
     /// Returns all words as images without the memory of a lane.

@@ -37,6 +37,11 @@ pub trait Integer: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output =
     /// Returns entry `self` of a table.
     fn entry(self, table: &'static [u8]) -> Self;
 
+    /// Returns the floor of the root of a number of at most 60 bits that is not negative.
+    #[inline(always)]
+    fn root(self) -> Self {
+        newton_root(self)
+    }
     /// Returns the number, which is known to be within these bounds.
     #[inline(always)]
     fn within(self, _low: i64, _high: i64) -> Self {
@@ -82,6 +87,18 @@ pub trait Integer: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output =
     fn magnitude(self) -> Self {
         self.greatest(Self::new(0) - self)
     }
+}
+
+/// Returns the floor of the root of a number of at most 60 bits that is not negative: five steps of Newton's method, each of which squares half of the
+/// error, from a power of two that is at most twice the root.
+pub fn newton_root<I: Integer>(n: I) -> I {
+    let one = I::new(1);
+    let mut root = one.up((n.bits() + one).down(one)).within(1, 1 << 30);
+    for _ in 0..5 {
+        root = (root + n.quotient(root)).down(one).greatest(one).within(1, 1 << 30);
+    }
+    // It is never below the floor, and at most 1 above.
+    root - one.or(n.is_below(root * root), I::new(0))
 }
 
 /// Number of the bit above the highest of 0: below that of all other numbers.
@@ -152,6 +169,10 @@ macro_rules! machine {
                 table[self as usize].into()
             }
             #[inline(always)]
+            fn root(self) -> $type {
+                self.isqrt()
+            }
+            #[inline(always)]
             fn within(self, low: i64, high: i64) -> $type {
                 debug_assert!((low..=high).contains(&(self as i64)), "{self} is not within {low} and {high}");
                 self
@@ -173,3 +194,20 @@ macro_rules! machine {
 }
 
 machine!(i32 i64);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+
+    #[test]
+    fn roots_are_floors() {
+        let mut random = Random::seeded(1);
+        let near = |n: i64| [n * n - 1, n * n, n * n + 1, n * (n + 2)];
+        let squares = (0..1 << 16).chain((1 << 30) - 1000..1 << 30).flat_map(near).filter(|n| *n >= 0);
+        let any = std::iter::repeat_with(|| random.bits() as i64 >> (4 + random.below(60)) & i64::MAX >> 3);
+        for n in squares.chain(any.take(400_000)) {
+            assert_eq!(newton_root(n), n.isqrt(), "{n}");
+        }
+    }
+}

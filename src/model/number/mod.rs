@@ -59,7 +59,7 @@ pub mod transform;
 
 pub use block::{Halved, Narrow, Quarter, Swar2};
 pub use ideal_tracks::{IDEAL_TRACKS, IdealTracks};
-pub use integer::{Choice, Integer};
+pub use integer::{Choice, Integer, newton_root};
 pub(crate) use integer::{LEAST_TOP, align};
 pub use lanes16::{LANES, Lanes16};
 pub use paired::Paired;

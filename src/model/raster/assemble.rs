@@ -72,7 +72,7 @@ impl Assembly {
     }
 
     /// Returns the size of a point in 1/8 pixel.
-    pub(crate) fn size_of(&self, number: usize) -> u16 {
+    pub fn size_of(&self, number: usize) -> u16 {
         let vertex = self.triangles.vertices(number)[1] as usize;
         self.point_sizes.as_ref().map_or(self.point_size, |sizes| sizes[vertex])
     }

@@ -6,7 +6,7 @@
 use super::binary::Binary;
 use super::setup::Triangle;
 use super::stroke::Figure;
-use super::weights::{Number, Weights, difference, ratios};
+use super::weights::{Linear, Number, Weights, completed_by, difference, edge_numbers, ratios, shares};
 use crate::number::Integer;
 use crate::number::convert::{align, depth as fraction, split};
 use crate::state::{DepthFormat, DepthRange, DepthTest, PolygonOffset, VertexDepths};
@@ -185,15 +185,25 @@ pub fn interpolate(e: [i64; 3], z: [f32; 3]) -> Binary {
     sum_of_terms(weights(e).shares, Binary::new(z[reference]), differences(z, reference), choice)
 }
 
-/// DEP-6: returns w_1 + b_0 (w_0 - w_1) + b_2 (w_2 - w_1) with perspective weights, each term cut as in DEP-1.
+/// DEP-6: returns the depth of vertices with these w.
 fn interpolate_w(e: [i64; 3], w: [f32; 3]) -> Binary {
     let ratios = ratios(w.map(Binary::new));
-    let Weights { shares: mut b, dominant, .. } = Weights::new(e.map(Binary::from_edge), Some(ratios));
-    // Cut, not rounded up as in WGT-1.
-    let others = [b[(dominant + 1) % 3], b[(dominant + 2) % 3]].map(|b| (b.mantissa, b.exponent));
-    let ([whole, one, other], exponent) = crate::number::align([(1, 0), others[0], others[1]], 61);
-    b[dominant] = Binary { mantissa: whole - one - other, exponent }.cut();
-    sum_of_terms(b, Binary::new(w[1]), differences(w, 1), [false, true, false])
+    w_depth(e.map(Binary::from_edge), ratios, Linear::new(w), cut_rest)
+}
+
+/// DEP-6: returns w_1 + b_0 (w_0 - w_1) + b_2 (w_2 - w_1) with perspective weights, each term cut as in DEP-1. The dominant weight is what `cut_rest` makes
+/// of the others.
+pub fn w_depth<N: Number>(e: [N; 3], ratios: [N; 3], w: Linear<N>, cut_rest: impl FnOnce(N, N) -> N) -> N {
+    let edges = edge_numbers(e, Some(ratios));
+    let b = completed_by(shares(edges, N::sum_of_edges(edges).reciprocal()), cut_rest);
+    sum_of_products([[b[0], w.first], [N::from_edge(1), w.second], [b[2], w.third]])
+}
+
+/// DEP-6: returns 1 less two weights: cut, not rounded up as in WGT-1.
+pub fn cut_rest<I: Integer>(a: Binary<I>, b: Binary<I>) -> Binary<I> {
+    let parts = [Binary::whole(I::new(1)), a, b].map(|n| (n.mantissa, n.exponent));
+    let ([whole, one, other], exponent) = crate::number::align(parts, 61);
+    Binary { mantissa: whole - one - other, exponent }.cut()
 }
 
 /// Returns the differences of numbers from that of the reference vertex.

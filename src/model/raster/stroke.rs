@@ -5,7 +5,8 @@
 
 use super::GUARD;
 use super::setup::Triangle;
-use crate::state::{LineRasterization, Lines, PolygonStipple, named};
+use crate::number::Integer;
+use crate::state::{CompareFunction, LineRasterization, Lines, PolygonStipple, named};
 
 named! {
     /// What a draw consists of.
@@ -70,13 +71,15 @@ pub(crate) fn point_box(at: [i64; 2], size: u16) -> [Range; 2] {
 /// PNT-2: returns floor(2^`bits` n (1/2 + d / 2 size)) of a picture of n texels, for a distance d of pixel and point. A whole number right of the
 /// centre or below it is one less, unless the size is a power of two. A point without size has 1/2.
 #[inline]
-pub fn sprite_coordinate(d: i64, size: u16, n: u32, bits: u32) -> i64 {
-    if size == 0 {
-        return (i64::from(n) << bits) / 2;
-    }
-    let (above, below) = ((i64::from(n) * (i64::from(size) + d)) << bits, 2 * i64::from(size));
-    let is_late = d > 0 && above % below == 0 && !size.is_power_of_two();
-    above.div_euclid(below) - i64::from(is_late)
+pub fn sprite_coordinate<I: Integer>(d: I, size: I, n: I, bits: I) -> I {
+    let (zero, one) = (I::new(0), I::new(1));
+    let (above, half) = ((n * (size + d)).up(bits), size.greatest(one));
+    let quotient = above.magnitude().quotient(half.up(one));
+    let is_whole = (above.magnitude() - quotient * half.up(one)).is_zero();
+    let floor = (zero - quotient - zero.or(is_whole, one)).or(above.is_negative(), quotient);
+    let is_power = half.compared(CompareFunction::Equal, one.up(half.bits() - one));
+    let is_late = zero.is_below(d) & is_whole & !is_power;
+    n.up(bits).down(one).or(size.is_zero(), floor - one.or(is_late, zero))
 }
 
 /// STP-1: returns whether filled triangles draw a pixel. Bits of a word lie as the bytes of a picture do: those of the first byte are the first
@@ -230,6 +233,8 @@ mod tests {
         let texel = |d: i64| sprite_coordinate(d, 192, 32, 8) >> 8;
         assert_eq!([texel(48), texel(-48), texel(-192), texel(192)], [19, 12, 0, 31]);
         assert_eq!([sprite_coordinate(64, 128, 32, 0), sprite_coordinate(0, 0, 32, 8)], [24, 16 << 8]);
+        // Left of the point, as quads have it.
+        assert_eq!([sprite_coordinate(-129, 128, 32, 0), sprite_coordinate(-193, 192, 6, 6)], [-1, -1]);
     }
 
     #[test]

@@ -118,10 +118,15 @@ pub fn dominance<N: Number>(b: [N; 3]) -> [N::Choice; 2] {
 /// WGT-1: returns the weights of shares: the dominant one is the rest of the others. `COVERED` says that no share is negative.
 #[inline(always)]
 pub fn completed<N: Number, const COVERED: bool>(b: [N; 3]) -> [N; 3] {
+    completed_by(b, |one, other| if COVERED { N::rest_of_weights(one, other) } else { N::rest(one, other) })
+}
+
+/// Returns the weights of shares, of which the dominant one is what `rest` makes of the others.
+#[inline(always)]
+pub fn completed_by<N: Number>(b: [N; 3], rest: impl FnOnce(N, N) -> N) -> [N; 3] {
     let [first, third] = dominance(b);
-    let (one, other) = (b[1].or(first | third, b[2]), b[2].or(first, b[0]));
     // The two that do not dominate: 1 and 2, 0 and 2, or 0 and 1.
-    let rest = if COVERED { N::rest_of_weights(one, other) } else { N::rest(one, other) };
+    let rest = rest(b[1].or(first | third, b[2]), b[2].or(first, b[0]));
     [rest.or(first, b[0]), b[1].or(first | third, rest), rest.or(third, b[2])]
 }
 

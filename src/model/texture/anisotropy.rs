@@ -1,6 +1,7 @@
 //! TEX-17: anisotropic filtering takes several taps along the longer axis of a footprint.
 
 use super::lod::Quad;
+use crate::number::Integer;
 
 /// Largest number of taps of a footprint.
 pub const MAX_TAPS: usize = 8;
@@ -27,54 +28,71 @@ impl Taps<i64, i32> {
 /// Returns the taps of a quad's footprint, whose longer side counts as at most `limit` times the shorter one. Without a
 /// quad, because one of its pixels lies behind the viewer, there is one tap.
 pub fn taps(quad: Option<Quad>, limit: u32) -> Taps<i64, i32> {
-    let Some([origin, right, lower]) = quad else { return Taps::ONE };
-    // Larger steps are limited to this.
-    let most = 1 << 40;
-    let along = |to: [i64; 2]| [0, 1].map(|n| to[n].saturating_sub(origin[n]).clamp(-most, most));
-    let (x, y) = (along(right), along(lower));
-    let near = |axis: [i64; 2]| axis.iter().all(|n| n.unsigned_abs() < MAX_NARROW_STEP);
-    if near(x) && near(y) {
-        taps_of_near(x, y, limit)
-    } else {
-        taps_of_far(x.map(i128::from), y.map(i128::from), limit)
-    }
-}
-
-/// Steps below this need no more than 64 bits.
-const MAX_NARROW_STEP: u64 = 1 << 26;
-
-/// Defines the computation of taps from a footprint's two steps, in integers of a given width.
-macro_rules! taps_in {
-    ($name:ident, $signed:ty, $unsigned:ty) => {
-        fn $name(x: [$signed; 2], y: [$signed; 2], limit: u32) -> Taps<i64, i32> {
-            let squared = |[u, v]: [$signed; 2]| (u * u + v * v).unsigned_abs();
-            let lengths = [x, y].map(|axis| squared(axis).isqrt());
-            let (axis, long, short) =
-                if lengths[0] >= lengths[1] { (x, lengths[0], lengths[1]) } else { (y, lengths[1], lengths[0]) };
-            let width = short.max(long.div_ceil(limit.into())).max(<$unsigned>::from(TEXEL));
-            if long <= width {
-                return Taps::ONE;
-            }
-            // Half the distance between two taps is `step` / (2 `long`) of the axis.
-            let pairs = long.div_ceil(2 * width) as usize;
-            let step = if pairs == 1 { long - width } else { width };
-            // Rounded to nearest. The limit keeps the weight of the outermost two from being negative.
-            let inner = ((512 * width / long).div_ceil(2) as i32).min(128 / (pairs as i32 - 1).max(1));
-            let mut taps = Taps { count: 2 * pairs, weights: [0; MAX_TAPS], ..Taps::ONE };
-            for pair in 0..pairs {
-                let reach = ((2 * pair as $signed + 1) * step as $signed, 2 * long as $signed);
-                let offset = axis.map(|n| (n * reach.0 / reach.1 / 256) as i64);
-                let weight = if pair + 1 == pairs { 128 - (pairs as i32 - 1) * inner } else { inner };
-                for (side, tap) in [(1, 2 * pair), (-1, 2 * pair + 1)] {
-                    (taps.offsets[tap], taps.weights[tap]) = (offset.map(|n| side * n), weight);
-                }
-            }
-            taps
-        }
+    let Pairs { count: count @ 1.., offsets, weights } = quad.map_or(Pairs::SINGLE, |quad| pairs(quad, limit)) else {
+        return Taps::ONE;
     };
+    let mut taps = Taps { count: 2 * count as usize, weights: [0; MAX_TAPS], ..Taps::ONE };
+    for tap in 0..taps.count {
+        let side = if tap % 2 == 0 { 1 } else { -1 };
+        taps.offsets[tap] = offsets[tap / 2].map(|offset| side * offset);
+        taps.weights[tap] = weights[tap / 2] as i32;
+    }
+    taps
 }
-taps_in!(taps_of_near, i64, u64);
-taps_in!(taps_of_far, i128, u128);
+
+/// Largest number of pairs of taps.
+pub const MAX_PAIRS: usize = MAX_TAPS / 2;
+
+/// Pairs of taps, one on either side of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pairs<I> {
+    /// Number of pairs; 0 for a single tap.
+    pub count: I,
+    /// The distance of each pair from the pixel: u and v in 1/256 texel; 0 for a single tap and for pairs that do not exist.
+    pub offsets: [[I; 2]; MAX_PAIRS],
+    /// The weight of each of its two taps, in 256ths: 0 for pairs that do not exist, 128 for a single tap, which both are then.
+    pub weights: [I; MAX_PAIRS],
+}
+
+impl Pairs<i64> {
+    /// A single tap.
+    pub(crate) const SINGLE: Self = Pairs { count: 0, offsets: [[0; 2]; MAX_PAIRS], weights: [128, 0, 0, 0] };
+}
+
+/// Longer steps between pixels count as this: 2^13 texels.
+const LONGEST_STEP: i64 = 1 << 29;
+
+/// TEX-17: returns the pairs of taps of a quad.
+pub fn pairs<I: Integer>([origin, right, lower]: [[I; 2]; 3], limit: u32) -> Pairs<I> {
+    let (zero, one) = (I::new(0), I::new(1));
+    let along = |to: [I; 2]| [0, 1].map(|n: usize| (to[n] - origin[n]).limited(-LONGEST_STEP, LONGEST_STEP));
+    let (x, y) = (along(right), along(lower));
+    let [of_x, of_y] = [x, y].map(|[u, v]| (u * u + v * v).root());
+    let is_y = of_x.is_below(of_y);
+    let axis = [0, 1].map(|n: usize| y[n].or(is_y, x[n]));
+    let (long, short) = (of_y.or(is_y, of_x).greatest(one), of_x.or(is_y, of_y));
+    let over = |n: I, by: I| (n + by - one).quotient(by);
+    let width = short.greatest(over(long, I::new(limit.into()))).greatest(I::new(TEXEL.into()));
+    let is_single = !width.is_below(long);
+    let count = over(long, width.up(one)).limited(1, i64::from(limit) / 2);
+    // Half the distance between two taps is `step` / (2 `long`) of the axis.
+    let step = (long - width).or(count.is_below(I::new(2)), width).greatest(zero);
+    // Rounded to nearest. The limit keeps the weight of the outermost two from being negative.
+    let others = count - one;
+    let inner = (width.up(I::new(9)).quotient(long) + one).down(one).least(I::new(128).quotient(others.greatest(one)));
+    let outer = I::new(128) - others * inner;
+    let of_pair = |pair: usize| {
+        let (number, reach) = (I::new(pair as i64), I::new(2 * pair as i64 + 1) * step);
+        let offset = axis.map(|n| {
+            let offset = (n.magnitude() * reach).quotient(long.up(I::new(9)));
+            zero.or(is_single | others.is_below(number), offset.negated(n.is_negative()))
+        });
+        let weight = inner.or(number.is_below(others), outer.or(!others.is_below(number), zero));
+        (offset, I::new(if pair == 0 { 128 } else { 0 }).or(is_single, weight))
+    };
+    let all: [([I; 2], I); MAX_PAIRS] = [0, 1, 2, 3].map(of_pair);
+    Pairs { count: zero.or(is_single, count), offsets: all.map(|pair| pair.0), weights: all.map(|pair| pair.1) }
+}
 
 /// Returns the taps of the ideal from s and t at the quad and the texture's sides in texels.
 #[allow(clippy::float_arithmetic, reason = "the ideal's footprint")]
@@ -129,12 +147,6 @@ mod tests {
     }
 
     proptest! {
-        #[test]
-        fn both_widths_agree(x in proptest::array::uniform2(-67_108_863..67_108_864_i64), y in proptest::array::uniform2(-67_108_863..67_108_864_i64), small in 0..26, limit in 1..=3_u32) {
-            let (x, y) = (x.map(|n| n >> small), y.map(|n| n >> (small / 2)));
-            prop_assert_eq!(taps_of_near(x, y, 1 << limit), taps_of_far(x.map(i128::from), y.map(i128::from), 1 << limit));
-        }
-
         #[test]
         fn weights_make_a_whole(
             x in proptest::array::uniform2(-(1_i64 << 62)..1 << 62), y in proptest::array::uniform2(-(1_i64 << 62)..1 << 62),

@@ -8,6 +8,7 @@ use super::real::{self, RealColor, RealTarget};
 use super::stage::{Color, Dot, PlannedShader, PlannedShaderStage, ShaderSetup, StageSetup};
 use super::{dot, shader, shader_report as report, unit};
 use crate::number::{Lane, convert};
+use crate::raster::binary::Binary;
 use crate::raster::fog::factor;
 use crate::raster::ideal;
 use crate::raster::interpolate::Sample;
@@ -197,14 +198,7 @@ impl<L: Lane> Chain<'_, L> {
     /// Returns the colour of an earlier unit. Channels that are not live have no meaning.
     fn color<O: Observer>(&self, unit: usize, state: &State<L>) -> Color {
         let register = state.registers[unit];
-        let planned = &self.shader.stages[unit];
-        let luminance = matches!(planned.state.operation, ShaderOperation::BumpEnvironment { luminance: Some(_), .. });
-        let sampled = self.unit(unit);
-        let doubled: [bool; 4] = std::array::from_fn(|n| match sampled {
-            Some(_) if luminance && n < 3 => false,
-            Some(unit) => holds_double(unit, n),
-            None => false,
-        });
+        let (sampled, doubled) = (self.unit(unit), self.shader.doubled(unit, self.units));
         let held = register.map(Lane::decision);
         let bytes = std::array::from_fn(|n| (held[n] >> u32::from(doubled[n])) as u8);
         let mut real = RealColor::default();
@@ -424,8 +418,8 @@ impl<L: Lane> Chain<'_, L> {
             if n == 3 && !lights_alpha || live >> n & 1 == 0 {
                 return color[n];
             }
-            let v = shader::luminance(color[n].decision(), previous.bytes[0], luminance);
-            let byte = i32::from(shader::luminance_byte(v));
+            let v = shader::luminance(color[n].decision().into(), previous.bytes[0].into(), luminance.map(Binary::new));
+            let byte = shader::luminance_byte(v) as i32;
             let value = observer.observe(Rule::Tsh8, color[n].multiplied(byte, || real::luminance(red, luminance)));
             if O::ON {
                 report::luminance(index, n, (color[n], v, value), previous.bytes[0], luminance, observer);
@@ -439,6 +433,16 @@ impl<L: Lane> State<L> {
     /// Returns the initial state, in which every unit is opaque black (TEX-16).
     fn new() -> Self {
         State { registers: [black(); TEXTURE_UNITS], dots: [None; TEXTURE_UNITS] }
+    }
+}
+
+impl PlannedShader {
+    /// Returns whether each channel of a stage's register holds twice its two's complement byte.
+    pub fn doubled(&self, index: usize, units: &[PlannedUnit]) -> [bool; 4] {
+        let PlannedShaderStage { state, unit, .. } = &self.stages[index];
+        let has_luminance = matches!(state.operation, ShaderOperation::BumpEnvironment { luminance: Some(_), .. });
+        let holds = |n: usize| unit.is_some_and(|unit| holds_double(&units[unit], n));
+        [0, 1, 2, 3].map(|n: usize| !(has_luminance && n < 3) && holds(n))
     }
 }
 

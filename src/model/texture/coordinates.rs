@@ -210,7 +210,8 @@ impl Interpolated<'_> {
             }
             Coordinates::Sprite { at, size } => {
                 let [x, y] = Self::from_point(*at, pixel);
-                Some([sprite_coordinate(x, *size, sides[0], 16), sprite_coordinate(y, *size, sides[1], 16)])
+                let of = |d: i64, side: i64| sprite_coordinate(d, (*size).into(), side, 16);
+                Some([of(x, width), of(y, height)])
             }
         }
     }
@@ -283,7 +284,8 @@ impl SampleCoordinates for Interpolated<'_> {
             }
             Coordinates::Sprite { at, size } => {
                 let [x, y] = Self::from_point(*at, self.pixel);
-                [sprite_coordinate(x, *size, sides[0], 8), sprite_coordinate(y, *size, sides[1], 8)]
+                let of = |d: i64, side: i64| sprite_coordinate(d, (*size).into(), side, 8);
+                [of(x, width), of(y, height)]
             }
         }
     }

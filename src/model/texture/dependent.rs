@@ -1,6 +1,6 @@
 //! Dependent reads: where a stage of the texture shader samples if its coordinates come from earlier units.
 
-use super::coordinates::{Real, SampleCoordinates};
+use super::coordinates::{Real, SampleCoordinates, face_of, on_face};
 use super::cube::Face;
 use super::lod::Quad;
 use super::planned::PlannedUnit;
@@ -9,7 +9,7 @@ use super::report::Report;
 use super::shader;
 use super::shader_report;
 use crate::raster::binary::Binary;
-use crate::raster::interpolate::{COORDINATE_LIMIT, FARTHEST, Sample};
+use crate::raster::interpolate::{COORDINATE_LIMIT, FARTHEST, Sample, face_coordinate};
 use crate::raster::weights::Linear;
 use crate::state::{DependentScale, Level, TriangleVertices};
 use crate::trace::{Observer, Rule};
@@ -42,6 +42,11 @@ pub struct Moved<'a> {
     pub blue_green: [u8; 2],
 }
 
+/// Returns a vector of the dot unit as numbers.
+fn direction(vector: [f32; 3]) -> [Binary; 3] {
+    shader::direction(vector.map(|component| component.to_bits().into()))
+}
+
 impl Moved<'_> {
     /// Returns the entries of the matrix that multiply blue and green: along u, then along v.
     pub(crate) fn entries(&self) -> [[f32; 2]; 2] {
@@ -55,9 +60,12 @@ impl Moved<'_> {
     }
 
     /// Returns the displaced coordinates in 2^-`power` texel of a level.
-    fn on(&self, unit: &PlannedUnit, level: &Level, power: i32, limit: i64) -> [i64; 2] {
+    fn on(&self, unit: &PlannedUnit, level: &Level, power: i64, limit: i64) -> [i64; 2] {
         let (sides, offsets) = (unit.scale(level), self.offsets());
-        std::array::from_fn(|n| shader::moved(self.at.value(&self.st[n]), offsets[n], sides[n], power, limit))
+        std::array::from_fn(|n| {
+            let (value, offset) = (self.at.value(&self.st[n]), offsets[n].to_bits().into());
+            shader::moved(value, offset, sides[n].into(), power, limit)
+        })
     }
 }
 
@@ -65,32 +73,22 @@ impl Target<'_> {
     /// Returns the face of a cube map, or [`Face::PositiveX`] for other kinds of texture.
     pub(crate) fn face(&self) -> Face {
         match self {
-            Target::Vector(vector) => {
-                let direction = shader::direction(*vector);
-                Face::from_direction(direction, direction.map(i64::abs), 0)
-            }
+            Target::Vector(vector) => face_of(direction(*vector)),
             Target::Moved(_) | Target::Bytes(..) | Target::Floats(_) => Face::PositiveX,
         }
     }
 
-    /// Returns the pairs of s and t, each with the major component, on a face.
-    fn on_face(vector: [f32; 3], face: Face) -> [[i64; 2]; 2] {
-        let direction = shader::direction(vector);
-        let [s, t, m] = face.components().map(|c| if c.negative { -direction[c.axis] } else { direction[c.axis] });
-        [[s, m], [t, m]]
-    }
-
     /// Returns u and v on a level, in 1/256 texel.
     pub(crate) fn on(&self, unit: &PlannedUnit, level: &Level) -> [i64; 2] {
-        let sides = unit.scale(level);
+        let sides = unit.scale(level).map(i64::from);
         let each = |of: &dyn Fn(usize) -> i64| [of(0), of(1)];
         match self {
             Target::Moved(moved) => moved.on(unit, level, 8, COORDINATE_LIMIT),
-            Target::Bytes(bytes, scale) => each(&|n| shader::dependent(bytes[n], sides[n], *scale)),
-            Target::Floats(floats) => each(&|n| shader::coordinate(floats[n], sides[n])),
+            Target::Bytes(bytes, scale) => each(&|n| shader::dependent(bytes[n].into(), sides[n], *scale)),
+            Target::Floats(floats) => each(&|n| shader::coordinate(floats[n].to_bits().into(), sides[n])),
             Target::Vector(vector) => {
-                let on_face = Self::on_face(*vector, self.face());
-                each(&|n| shader::face_coordinate(on_face[n][0], on_face[n][1], sides[n], 8))
+                let [s, t, m] = on_face(direction(*vector), self.face());
+                [face_coordinate(s, m, sides[0], 8), face_coordinate(t, m, sides[1], 8)]
             }
         }
     }
@@ -99,18 +97,18 @@ impl Target<'_> {
     /// the face.
     pub(crate) fn at_quad(&self, unit: &PlannedUnit, face: Face) -> Option<[i64; 2]> {
         let level = &unit.levels[0];
-        let sides = unit.scale(level);
+        let sides = unit.scale(level).map(i64::from);
         let each = |of: &dyn Fn(usize) -> i64| [of(0), of(1)];
         Some(match self {
             Target::Moved(moved) => moved.on(unit, level, 16, FARTHEST),
-            Target::Bytes(bytes, scale) => each(&|n| shader::dependent(bytes[n], sides[n] << 8, *scale)),
-            Target::Floats(floats) => each(&|n| shader::quad_coordinate(floats[n], sides[n])),
+            Target::Bytes(bytes, scale) => each(&|n| shader::dependent(bytes[n].into(), sides[n] << 8, *scale)),
+            Target::Floats(floats) => each(&|n| shader::quad_coordinate(floats[n].to_bits().into(), sides[n])),
             Target::Vector(vector) => {
-                let on_face = Self::on_face(*vector, face);
-                if on_face[0][1] <= 0 {
+                let [s, t, m] = on_face(direction(*vector), face);
+                if m.mantissa <= 0 {
                     return None;
                 }
-                each(&|n| shader::face_coordinate(on_face[n][0], on_face[n][1], sides[n], 16))
+                [face_coordinate(s, m, sides[0], 16), face_coordinate(t, m, sides[1], 16)]
             }
         })
     }
@@ -132,8 +130,7 @@ impl Target<'_> {
                 RealTarget::bytes(bytes.map(f64::from), whole)
             }
             Target::Floats(floats) => RealTarget::Coordinates(floats.map(f64::from)),
-            // As integers, because they have no NaN or infinity.
-            Target::Vector(vector) => RealTarget::Vector(shader::direction(*vector).map(|c| c as f64)),
+            Target::Vector(vector) => RealTarget::Vector(vector.map(f64::from)),
         }
     }
 }

@@ -5,6 +5,7 @@
 //! Every machine therefore computes the same bits, except those of a NaN, which counts as 0 wherever it is used.
 #![allow(clippy::float_arithmetic, reason = "the chip's dot unit is a float unit (TSH-4); its ideal stands beside it")]
 
+use crate::number::Integer;
 use crate::state::DotMapping;
 use std::ops::{Add, Mul, Sub};
 
@@ -23,39 +24,47 @@ impl Number for f64 {
 }
 
 /// A vector of three numbers, such as coordinates or a remapped colour.
-pub(crate) type Vector<N> = [N; 3];
+pub type Vector<N> = [N; 3];
 
-/// TSH-1, TSH-2 and TSH-3: returns three fractions, each a numerator and a denominator, of the bytes R, G, B, A of a
-/// colour. All have at most 24 bits.
+/// Reads a number of `bits` bits as two's complement.
 #[inline(always)]
-pub(crate) fn fractions(mapping: DotMapping, bytes: [u8; 4]) -> [(i32, i32); 3] {
-    let [r, g, b, a] = bytes;
-    let each = |of: fn(u8) -> i32, whole: i32| [r, g, b].map(|byte| (of(byte), whole));
-    let halves = [[a, r], [g, b]].map(u16::from_be_bytes);
+pub fn signed<I: Integer>(n: I, bits: u32) -> I {
+    n - I::new(0).or(n.is_below(I::new(1 << (bits - 1))), I::new(1 << bits))
+}
+
+/// TSH-1, TSH-2 and TSH-3: returns three fractions, each a numerator and a denominator, of the bytes R, G, B, A of a colour. Numerators have at most
+/// 16 bits and a sign, denominators as many, or are powers of two up to 2^29.
+#[inline(always)]
+pub fn fractions<I: Integer>(mapping: DotMapping, [r, g, b, a]: [I; 4]) -> [(I, I); 3] {
+    let over = |whole: i64, numerators: [I; 3]| numerators.map(|numerator| (numerator, I::new(whole)));
+    let halves = [(a, r), (g, b)].map(|(high, low)| high.up(I::new(8)) + low);
     match mapping {
-        DotMapping::ZeroToOne => each(i32::from, 255),
-        DotMapping::MinusOneToOneD3d => each(|v| i32::from(v) - 128, 127),
-        DotMapping::MinusOneToOneGl => each(|v| 2 * i32::from(v as i8) + 1, 255),
-        DotMapping::MinusOneToOne => each(|v| i32::from(v as i8), 127),
-        DotMapping::Hilo1 => [(i32::from(halves[0]), 65535), (i32::from(halves[1]), 65535), (1, 1)],
+        DotMapping::ZeroToOne => over(255, [r, g, b]),
+        DotMapping::MinusOneToOneD3d => over(127, [r, g, b].map(|v| v - I::new(128))),
+        DotMapping::MinusOneToOneGl => over(255, [r, g, b].map(|v| signed(v, 8).up(I::new(1)) + I::new(1))),
+        DotMapping::MinusOneToOne => over(127, [r, g, b].map(|v| signed(v, 8))),
+        DotMapping::Hilo1 => {
+            let whole = I::new(65535);
+            [(halves[0], whole), (halves[1], whole), (I::new(1), I::new(1))]
+        }
         DotMapping::HiloHemisphere => {
-            let [high, low] = halves.map(|half| i32::from(half as i16));
-            [(high, 32768), (low, 32768), third_of_unit(high, low)]
+            let [x, y] = halves.map(|half| signed(half, 16));
+            [(x, I::new(1 << 15)), (y, I::new(1 << 15)), third_of_unit(x, y)]
         }
     }
 }
 
 /// TSH-3: number of pieces of the root of a mantissa in [1/4, 1/2), and of one in [1/2, 1).
-const PIECES: u32 = 32;
+const PIECES: usize = 32;
 
 /// TSH-3: the straight pieces of the root, 32 to an octave: the root at a piece's start with 18 fraction bits, and its rise
 /// with 16, both cut. The last is the root of 1.
-const ROOT: [(u32, u32); 2 * PIECES as usize + 1] = {
-    let mut pieces = [(1 << 18, 0); 2 * PIECES as usize + 1];
+const ROOT: [(u32, u32); 2 * PIECES + 1] = {
+    let mut pieces = [(1 << 18, 0); 2 * PIECES + 1];
     let mut at = 0;
-    while at < 2 * PIECES as usize {
+    while at < 2 * PIECES {
         // A piece of the lower octave is 1/128 wide, of the upper 1/64; roots have 30 fraction bits first.
-        let (start, up) = if at < PIECES as usize { (at as u64 + 32, 53) } else { (at as u64, 54) };
+        let (start, up) = if at < PIECES { (at as u64 + 32, 53) } else { (at as u64, 54) };
         let (root, next) = ((start << up).isqrt(), ((start + 1) << up).isqrt());
         pieces[at] = ((root >> 12) as u32, ((next - root) >> 14) as u32);
         at += 1;
@@ -63,28 +72,44 @@ const ROOT: [(u32, u32); 2 * PIECES as usize + 1] = {
     pieces
 };
 
+/// TSH-3: the bytes of the straight pieces of the root, the lowest first: three of the starts, two of the rises.
+pub static ROOT_BYTES: [[u8; ROOT.len()]; 5] = {
+    let mut bytes = [[0; ROOT.len()]; 5];
+    let mut at = 0;
+    while at < ROOT.len() {
+        let (start, rise) = ROOT[at];
+        let [a, b, c, _] = start.to_le_bytes();
+        let [d, e, ..] = rise.to_le_bytes();
+        (bytes[0][at], bytes[1][at], bytes[2][at], bytes[3][at], bytes[4][at]) = (a, b, c, d, e);
+        at += 1;
+    }
+    bytes
+};
+
 /// TSH-3: returns the third component of the unit vector with x = high/32768 and y = low/32768, a fraction of at most 16
 /// bits over a power of two. It is at most 1.3 * 2^-14 below the root of what is left, and never above.
-fn third_of_unit(high: i32, low: i32) -> (i32, i32) {
-    let left = (1 << 30) - i64::from(high) * i64::from(high) - i64::from(low) * i64::from(low);
-    if left <= 0 {
-        return (0, 1);
-    }
+#[inline(always)]
+fn third_of_unit<I: Integer>(high: I, low: I) -> (I, I) {
+    let (zero, one) = (I::new(0), I::new(1));
+    let left = (I::new(1 << 30) - high * high - low * low).within(-(1 << 30), 1 << 30);
+    let positive = left.greatest(one);
     // A mantissa in [1/4, 1), or 1, of 30 bits; the root is that of `left` times 2^halvings.
-    let halvings = 29_u32.saturating_sub(left.ilog2()) / 2;
-    let mantissa = (left << (2 * halvings)) as u32;
-    let upper = mantissa >> 29 != 0;
-    let width = if upper { 24 } else { 23 };
-    let piece = (mantissa >> width) - if upper { 0 } else { PIECES };
-    let (start, rise) = ROOT[piece as usize];
-    let along = mantissa >> (width - 10) & 1023;
-    ((((start << 8) + rise * along) >> 11) as i32, 1 << (15 + halvings))
+    let halvings = (I::new(30) - positive.bits()).greatest(zero).down(one);
+    let mantissa = positive.up(halvings.up(one)).within(1 << 28, 1 << 30);
+    let is_lower = mantissa.is_below(I::new(1 << 29));
+    let of_piece = mantissa.down(I::new(13).or(is_lower, I::new(14)));
+    let piece = (of_piece.down(I::new(10)) - I::new(PIECES as i64).or(is_lower, zero)).within(0, 2 * PIECES as i64);
+    let byte = |n: usize| piece.entry(&ROOT_BYTES[n]).up(I::new([0, 8, 16, 0, 8][n]));
+    let (start, rise) = (byte(0) + byte(1) + byte(2), byte(3) + byte(4));
+    let root = (start.up(I::new(8)) + rise * of_piece.masked(1023)).down(I::new(11));
+    let is_nothing = left.is_below(one);
+    (zero.or(is_nothing, root), one.or(is_nothing, one.up(halvings + I::new(15))))
 }
 
 /// TSH-1 to TSH-3 in single precision, with each fraction rounded once.
 #[inline(always)]
 pub fn remap(mapping: DotMapping, bytes: [u8; 4]) -> Vector<f32> {
-    fractions(mapping, bytes).map(|(numerator, denominator)| numerator as f32 / denominator as f32)
+    fractions(mapping, bytes.map(i32::from)).map(|(numerator, denominator)| numerator as f32 / denominator as f32)
 }
 
 /// TSH-4: returns the three products of a dot product.
@@ -101,14 +126,14 @@ pub fn sum<N: Number>([x, y, z]: Vector<N>) -> N {
 
 /// TSH-4: returns the dot product.
 #[inline(always)]
-pub(crate) fn dot<N: Number>(a: Vector<N>, b: Vector<N>) -> N {
+pub fn dot<N: Number>(a: Vector<N>, b: Vector<N>) -> N {
     sum(products(a, b))
 }
 
 /// TSH-7: returns the displacement of a coordinate, which is two matrix entries times blue and green. Each operation is
 /// rounded.
 #[inline(always)]
-pub(crate) fn moved<N: Number>(entries: [N; 2], blue_green: [N; 2]) -> N {
+pub fn moved<N: Number>(entries: [N; 2], blue_green: [N; 2]) -> N {
     entries[0] * blue_green[0] + entries[1] * blue_green[1]
 }
 
@@ -141,7 +166,7 @@ pub fn reflect<N: Number>(normal: Vector<N>, eye: Vector<N>) -> Reflection<N> {
 
 /// TSH-5: reflects the eye vector about a normal, of which `square` counts as the squared length.
 #[inline(always)]
-pub(crate) fn reflect_about<N: Number>(normal: Vector<N>, square: N, eye: Vector<N>) -> Reflection<N> {
+pub fn reflect_about<N: Number>(normal: Vector<N>, square: N, eye: Vector<N>) -> Reflection<N> {
     let toward = dot(normal, eye);
     let scale = N::TWO * toward;
     let component = |n: usize| scale * normal[n] - square * eye[n];
@@ -173,8 +198,10 @@ mod tests {
             let want = [(v, 255), (v - 128, 127), (2 * s + 1, 255), (s, 127)];
             for (mapping, want) in DotMapping::ALL.iter().zip(want) {
                 let bytes = [byte, 255 - byte, byte ^ 0x55, 7];
-                assert_eq!(fractions(*mapping, bytes)[0], want, "{mapping:?} {byte}");
-                for (value, fraction) in remap(*mapping, bytes).into_iter().zip(fractions(*mapping, bytes)) {
+                assert_eq!(fractions(*mapping, bytes.map(i32::from))[0], want, "{mapping:?} {byte}");
+                for (value, fraction) in
+                    remap(*mapping, bytes).into_iter().zip(fractions(*mapping, bytes.map(i32::from)))
+                {
                     assert!(is_nearest(value, fraction), "{mapping:?} {value} {fraction:?}");
                 }
             }
@@ -189,12 +216,12 @@ mod tests {
         for half in 0..=65535_u16 {
             let [high, low] = half.to_be_bytes();
             let bytes = [low, 0x12, 0x34, high];
-            let unsigned = fractions(DotMapping::Hilo1, bytes);
+            let unsigned = fractions(DotMapping::Hilo1, bytes.map(i32::from));
             assert_eq!(unsigned, [(i32::from(half), 65535), (0x1234, 65535), (1, 1)]);
-            let signed = fractions(DotMapping::HiloHemisphere, bytes);
+            let signed = fractions(DotMapping::HiloHemisphere, bytes.map(i32::from));
             assert_eq!(signed[..2], [(i32::from(half as i16), 32768), (0x1234, 32768)]);
             for mapping in [DotMapping::Hilo1, DotMapping::HiloHemisphere] {
-                assert!(is_nearest(remap(mapping, bytes)[0], fractions(mapping, bytes)[0]));
+                assert!(is_nearest(remap(mapping, bytes)[0], fractions(mapping, bytes.map(i32::from))[0]));
             }
         }
     }

@@ -21,5 +21,6 @@ pub mod shader;
 mod shader_report;
 pub mod shadow;
 pub mod show;
+pub mod single;
 pub mod stage;
 pub mod unit;

@@ -213,7 +213,7 @@ impl Unit for VolumeLayer {
 pub(super) struct AnisotropyTaps;
 
 /// Largest number of pairs of taps.
-const PAIRS: usize = anisotropy::MAX_TAPS / 2;
+const PAIRS: usize = anisotropy::MAX_PAIRS;
 
 impl Unit for AnisotropyTaps {
     known_as!(

@@ -157,7 +157,7 @@ impl Unit for BumpOffset {
         let entries = [1, 2].map(|n| float(inputs[n]));
         let (offset, s) = (shader::offset(entries, [inputs[3] as u8, inputs[4] as u8]), Binary::new(float(inputs[5])));
         results[0] = if offset.is_nan() { f32::NAN } else { offset }.to_bits().into();
-        results[1] = shader::moved(s, offset, inputs[0] as u32, 8, COORDINATE_LIMIT);
+        results[1] = shader::moved(s, offset.to_bits().into(), inputs[0], 8, COORDINATE_LIMIT);
     }
 }
 
@@ -176,8 +176,8 @@ impl Unit for Luminance {
     );
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
-        results[0] = shader::luminance(inputs[0] as i32, inputs[1] as u8, [2, 3].map(|n| float(inputs[n])));
-        results[1] = shader::luminance_byte(results[0]).into();
+        results[0] = shader::luminance(inputs[0], inputs[1], [2, 3].map(|n| Binary::from_bits(inputs[n])));
+        results[1] = shader::luminance_byte(results[0]);
     }
 }
 
@@ -202,8 +202,7 @@ impl Unit for Dependent {
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        let size = inputs[0] as u32;
-        results[0] = shader::dependent(inputs[1] as u8, size, conditions.policies.dependent_scale);
-        results[1] = shader::coordinate(float(inputs[2]), size);
+        results[0] = shader::dependent(inputs[1], inputs[0], conditions.policies.dependent_scale);
+        results[1] = shader::coordinate(inputs[2], inputs[0]);
     }
 }

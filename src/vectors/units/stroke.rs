@@ -252,7 +252,7 @@ impl Unit for SpriteCoordinate {
     }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
-        results[0] = sprite_coordinate(inputs[0], inputs[1] as u16, inputs[2] as u32, 8);
+        results[0] = sprite_coordinate(inputs[0], inputs[1], inputs[2], 8);
     }
 }
 

@@ -64,13 +64,16 @@ int main(int count, char **names)
         for (uint32_t k = 0; k < triangles; k++) {
             struct ninebit_vertex vertex[3];
             struct ninebit_triangle triangle;
-            if (sizeof triangle != 4 * 176) return 5;
+            if (sizeof triangle != 4 * 184) return 5;
             memset(&triangle, 0, sizeof triangle);
             memcpy(vertex, given, sizeof vertex);
             given += sizeof vertex / 4;
             set_ups[n](vertex, &triangle);
             triangle.offset = next64();
             triangle.offset_exponent = (int32_t)next();
+            triangle.sprite[0] = (int32_t)next();
+            triangle.sprite[1] = (int32_t)next();
+            triangle.sprite_size = (int32_t)next();
             const uint32_t is_stroke = next();
             for (int e = 0; e < 3; e++) {
                 const int64_t a = next64(), b = next64(), c = next64();
@@ -134,7 +137,7 @@ impl Printed<'_> {
                 self.triangle(number, &context, (rows, columns), &mut drawn);
             }
             given.extend([draw.target as u32, count]);
-            for memory in self.memories(number, &words) {
+            for memory in words.memories(draw) {
                 given.push(memory.len() as u32);
                 given.extend(memory.iter());
             }
@@ -164,7 +167,8 @@ impl Printed<'_> {
         let wide = |n: i64, out: &mut Vec<u32>| out.extend([n as u32, (n >> 32) as u32]);
         let constants = setup.constants(context);
         wide(constants[&Field::Offset], out);
-        out.push(constants[&Field::OffsetExponent] as u32);
+        let others = [Field::OffsetExponent, Field::Sprite(0), Field::Sprite(1), Field::SpriteSize];
+        out.extend(others.map(|field| constants[&field] as u32));
         out.push((context.triangle.figure() != Figure::Triangle).into());
         context.triangle.edge_functions().iter().flatten().for_each(|n| wide(*n, out));
         let mut spans = Vec::new();

@@ -7,7 +7,7 @@ use ninebit::engine::walk::covered;
 use ninebit::engine::{TextureWords, cleared, trace};
 use ninebit::frame::Frames;
 use ninebit::plan::Plan;
-use ninebit::state::{Named, Scene};
+use ninebit::state::Scene;
 use ninebit_lower::code::{Given, Test, run, value_of};
 use ninebit_lower::{Draw, Field, Function, Input, Options, Result, Setup};
 
@@ -45,17 +45,16 @@ impl Given for At<'_> {
 }
 
 impl<'p> Printed<'p> {
-    /// Makes the functions, or names the states that are refused.
-    pub fn new(scene: &'p Scene, plan: &'p Plan) -> std::result::Result<Printed<'p>, String> {
+    /// Makes the functions.
+    pub fn new(scene: &'p Scene, plan: &'p Plan) -> Printed<'p> {
         let options = Options { policies: plan.policies, ..Options::default() };
         let mut draws = Vec::new();
         for (number, draw) in plan.draws().iter().enumerate() {
-            let function = Function::of_pixel(scene, plan, number, &options)
-                .map_err(|refusals| refusals.iter().map(|refusal| refusal.name()).collect::<Vec<_>>().join(", "))?;
+            let function = Function::of_pixel(scene, plan, number, &options);
             let setup = Setup::new(plan, draw, &function);
             draws.push((function, setup));
         }
-        Ok(Printed { scene, plan, draws })
+        Printed { scene, plan, draws }
     }
 
     /// Returns the draws with names, `draw0` and so on.
@@ -70,22 +69,13 @@ impl<'p> Printed<'p> {
             .collect()
     }
 
-    /// Returns the memories of a draw's units.
-    pub fn memories<'w>(&self, number: usize, words: &'w TextureWords<'_>) -> [Cow<'w, [u32]>; 4] {
-        let mut memories = [0; 4].map(|_| Cow::Borrowed(&[][..]));
-        for unit in &self.plan.draws()[number].units {
-            memories[unit.index] = unit.texel_words(words.words(unit.state.texture));
-        }
-        memories
-    }
-
     /// Draws the scene by running the lines.
     pub fn run(&self) -> Frames {
         let (plan, mut frames) = (self.plan, cleared(self.plan));
         for (number, (draw, (function, setup))) in plan.draws().iter().zip(&self.draws).enumerate() {
             let surfaces = frames.surfaces.clone();
             let words = TextureWords::new(plan, &plan.draws()[number..=number], &surfaces);
-            let memories = self.memories(number, &words);
+            let memories = words.memories(draw);
             let Result::Pixel { word, depth, test } = function.result else { panic!("no pixel") };
             let surface = &mut frames.surfaces[draw.target];
             let (mut triangle, mut constants) = (usize::MAX, HashMap::new());

@@ -126,7 +126,7 @@ impl Printed<'_> {
                 }
             }
             let mut memory = vec![0; 4];
-            for (unit, words) in self.memories(number, &words).iter().enumerate() {
+            for (unit, words) in words.memories(draw).iter().enumerate() {
                 memory[unit] = memory.len() as u32;
                 memory.extend(words.iter());
             }
@@ -150,14 +150,15 @@ fn triangle(constants: &HashMap<Field, i64>) -> Vec<u32> {
     fields.extend((0..3).map(Field::Edge).chain((0..3).map(Field::Ratio)));
     fields.extend((0..16).flat_map(|n| Part::ALL.map(|part| Field::Coordinate(n / 4, n % 4, part))));
     fields.extend(Part::ALL.map(Field::Fog).into_iter().chain((0..3).map(Field::Depth)));
-    fields.extend((0..9).map(|n| Field::DepthDifference(n / 3, n % 3)).chain([Field::Offset]));
+    fields.extend((0..9).map(|n| Field::DepthDifference(n / 3, n % 3)).chain((0..3).map(Field::DepthRatio)));
+    fields.push(Field::Offset);
     fields.extend((0..24).map(|n| Field::Color(n / 12, n / 3 % 4, n % 3)));
     fields.extend((0..3).map(Field::Owns).chain([Field::FogByte, Field::OffsetExponent]));
+    fields.extend([Field::Sprite(0), Field::Sprite(1), Field::SpriteSize]);
     let mut out: Vec<u32> = Vec::new();
     for field in fields {
         out.extend(field.words(constants.get(&field).copied().unwrap_or(0)));
     }
-    out.push(0);
-    assert_eq!(out.len(), 176);
+    assert_eq!(out.len(), 184);
     out
 }

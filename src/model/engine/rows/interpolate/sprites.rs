@@ -40,7 +40,9 @@ impl Sprite {
         for (axis, (first, end)) in [point.columns, point.rows].into_iter().enumerate() {
             // Quads have columns and rows beside the point.
             let (first, end) = (first & !1, (end + 1) & !1);
-            let of = |n: i64| sprite_coordinate(16 * n + 8 - i64::from(at[axis]), size, sampler.sides[axis], bits);
+            let of = |n: i64| {
+                sprite_coordinate(16 * n + 8 - i64::from(at[axis]), size.into(), sampler.sides[axis].into(), bits)
+            };
             self.first[axis] = first as f64;
             for (out, n) in self.coordinates[axis].iter_mut().zip(first..end) {
                 *out = (of(n) - i64::from(bias)) as f64;

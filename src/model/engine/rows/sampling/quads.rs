@@ -17,8 +17,7 @@ use crate::engine::rows::geometry::weights::Pixels;
 use crate::engine::rows::lanes::{PerLane, floor_of_quotient, larger, whole_steps};
 use crate::raster::binary::Binary;
 use crate::raster::interpolate::face_coordinate;
-use crate::texture::coordinates::quad_ratio;
-use crate::texture::cube::Face;
+use crate::texture::coordinates::{face_of, on_face, quad_ratio};
 use crate::texture::lod::Quad;
 use crate::texture::planned::PlannedUnit;
 use crate::texture::shader;
@@ -201,7 +200,7 @@ impl Quads {
         let scale = 32768.0 * side;
         let (behind, far) = (&mut behind[..rounded], &mut far[..rounded]);
         let [a, b, c] = directions[0].each_ref().map(|of| &of[..rounded]);
-        for (pixel, ([x, y, z], [u, v])) in directions.iter().zip(at).enumerate() {
+        for ([x, y, z], [u, v]) in directions.iter().zip(at) {
             let (x, y, z) = (&x[..rounded], &y[..rounded], &z[..rounded]);
             let (u, v) = (&mut u[..rounded], &mut v[..rounded]);
             for n in 0..rounded {
@@ -211,12 +210,9 @@ impl Quads {
                 behind[n] |= i32::from(!ahead);
                 let (along, down) = (floor_of_quotient(s * scale, by), floor_of_quotient(t * scale, by));
                 let is_far = larger(along.abs(), down.abs()) >= EXACT;
-                let largest = larger(larger(x[n].abs(), y[n].abs()), z[n].abs());
-                let (x, y, z) = (x[n], y[n], z[n]);
                 // What is not finite times 0 is no number.
-                let finite = x * 0.0 + y * 0.0 + z * 0.0 == 0.0;
-                let coarse = of_vector & (loses_bits([s, t, m], largest, pixel == 0) | !finite);
-                far[n] |= i32::from(is_far | coarse);
+                let finite = x[n] * 0.0 + y[n] * 0.0 + z[n] * 0.0 == 0.0;
+                far[n] |= i32::from(is_far | of_vector & !finite);
                 (u[n], v[n]) = (scale + along, scale + down);
             }
         }
@@ -247,33 +243,18 @@ impl Quads {
                     [s, t].map(|s| face_coordinate(s, m, sides[0].into(), 16))
                 }
                 Projection::CubeOfVector => {
-                    let vector = |direction: [f64; 3]| shader::direction(direction.map(|component| component as f32));
-                    let (first, direction) = (vector(first), vector(direction(pixel)));
-                    let face = Face::from_direction(first, first.map(i64::abs), 0);
-                    let [s, t, m] =
-                        face.components().map(|of| if of.negative { -direction[of.axis] } else { direction[of.axis] });
-                    if m <= 0 {
+                    let bits = |component: f64| i64::from((component as f32).to_bits());
+                    let vector = |pixel: usize| shader::direction(direction(pixel).map(bits));
+                    let [s, t, m] = on_face(vector(pixel), face_of(vector(0)));
+                    if m.mantissa <= 0 {
                         return None;
                     }
-                    [s, t].map(|s| shader::face_coordinate(s, m, sides[0], 16))
+                    [s, t].map(|s| face_coordinate(s, m, sides[0].into(), 16))
                 }
             };
         }
         Some(quad)
     }
-}
-
-/// Components that are smaller than the largest by such a factor may lose bits in the definition ([`direction`](crate::texture::shader)).
-const TINY: f64 = (1_u64 << 36) as f64;
-
-/// The largest accepted ratio of any component to the major one, which then keeps all of its bits.
-const STEEPEST: f64 = (1 << 14) as f64;
-
-/// TSH-5: returns whether the definition may cut bits off the components of a vector on a face, or off the major one.
-#[inline(always)]
-fn loses_bits([s, t, m]: [f64; 3], largest: f64, is_first: bool) -> bool {
-    let tiny = |s: f64| (s != 0.0) & (s.abs() * TINY < largest);
-    (m * STEEPEST < largest) | (!is_first & (tiny(s) | tiny(t)))
 }
 
 /// Returns a number of at most 27 bits.

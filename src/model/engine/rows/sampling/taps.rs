@@ -43,8 +43,7 @@ impl Measure for PairsOfQuad {
     }
 
     fn of_quad(unit: &PlannedUnit, quad: Option<Quad>) -> PairsOfQuad {
-        let taps = anisotropy::taps(quad, unit.state.anisotropy);
-        PairsOfQuad::from_taps(&taps, [unit.levels[0].width, unit.levels[0].height])
+        PairsOfQuad::new(quad, unit.state.anisotropy)
     }
 }
 
@@ -118,9 +117,8 @@ mod tests {
             pairs_of_near(&reals, f64::from(limit), &mut got);
             for n in 0..STEP {
                 let quad = [[0, 0], [deltas[0][n], deltas[1][n]], [deltas[2][n], deltas[3][n]]];
-                let taps = anisotropy::taps(Some(quad), limit);
-                assert_eq!(got[n], PairsOfQuad::from_taps(&taps, [256; 2]), "{quad:?}, {limit}");
-                several += usize::from(taps.count > 1);
+                assert_eq!(got[n], PairsOfQuad::new(Some(quad), limit), "{quad:?}, {limit}");
+                several += usize::from(got[n].offsets[0] != [0, 0]);
             }
         }
         assert!(several > 300_000, "{several}");

@@ -74,7 +74,7 @@ pub(crate) struct Linear {
 impl Linear {
     /// Returns `None` if the mapping is not linear.
     fn new(mapping: DotMapping) -> Option<Linear> {
-        let of = |byte: u8| dot::fractions(mapping, [byte; 4]);
+        let of = |byte: u8| dot::fractions(mapping, [i32::from(byte); 4]);
         let (plus, whole) = of(0)[0];
         let times = of(1)[0].0 - plus;
         let [times, plus, whole] = [times, plus, whole].map(|n| i16::try_from(n).ok());
@@ -211,8 +211,9 @@ fn is_below<const FMA: bool>(s: f32, m: f32, f: f32) -> bool {
 #[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
+    use crate::raster::interpolate::face_coordinate;
     use crate::state::Named;
-    use crate::texture::cube::Face;
+    use crate::texture::coordinates::{face_of, on_face};
     use crate::texture::shader;
 
     /// Every byte in every channel of every mapping, plain and doubled, beside others.
@@ -273,11 +274,11 @@ mod tests {
                 on_faces::<false>(all, of, at, &mut scratch, &mut u, &mut v, &mut faces);
             }
             for n in 0..BLOCK {
-                let direction = shader::direction([vector[0][n], vector[1][n], vector[2][n]]);
-                let face = Face::from_direction(direction, direction.map(i64::abs), 0);
-                let [s, t, m] =
-                    face.components().map(|c| if c.negative { -direction[c.axis] } else { direction[c.axis] });
-                let at = [s, t].map(|s| shader::face_coordinate(s, m, size, 8) as i32 - bias);
+                let bits = |axis: usize| i64::from(vector[axis][n].to_bits());
+                let direction = shader::direction([bits(0), bits(1), bits(2)]);
+                let face = face_of(direction);
+                let [s, t, m] = on_face(direction, face);
+                let at = [s, t].map(|s| face_coordinate(s, m, size.into(), 8) as i32 - bias);
                 let context = [vector[0][n], vector[1][n], vector[2][n]];
                 assert_eq!((faces[n], [u[n], v[n]]), (face as u32, at), "{context:?} on {size}");
             }

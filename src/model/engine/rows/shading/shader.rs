@@ -5,6 +5,7 @@ use super::dot::Remap;
 use crate::engine::rows::interpolate::numbers::Purpose;
 use crate::engine::rows::sampling::sampler::Sampler;
 use crate::plan::PlannedDraw;
+use crate::raster::binary::Binary;
 use crate::state::{DependentScale, ShaderOperation, ShaderStage, TEXTURE_UNITS};
 use crate::texture::shader;
 use crate::texture::stage::PlannedShaderStage;
@@ -152,9 +153,9 @@ impl Shader {
             }
             ShaderOperation::DependentAlphaRed | ShaderOperation::DependentGreenBlue => {
                 let sampler = &samplers[sampler?];
-                stage.dependent = sampler
-                    .sides
-                    .map(|side| (0..=255).map(|byte| shader::dependent(byte, side << 8, scale) as f64).collect());
+                stage.dependent = sampler.sides.map(|side| {
+                    (0..=255).map(|byte| shader::dependent(byte, i64::from(side) << 8, scale) as f64).collect()
+                });
             }
             _ => {}
         }
@@ -213,7 +214,7 @@ pub(crate) fn initial(stage: &PlannedShaderStage) -> [Option<i16>; 4] {
 /// The definition is floor(c X) with some X. Neighbours among the fractions with denominators up to 255 enclose X, and F is their mediant:
 /// its denominator, which is at most 509, is above 255, so that c F is not whole.
 fn luminance_factor(red: u8, state: [f32; 2]) -> f32 {
-    let floor = |c: i64| shader::luminance(c as i32, red, state);
+    let floor = |c: i64| shader::luminance(c, red.into(), state.map(Binary::new));
     let first = floor(1);
     let (mut below, mut above) = ((first, 1), (first + 1, 1));
     loop {
@@ -251,8 +252,9 @@ mod tests {
             for red in 0..=255 {
                 let factors = [luminance_factor(red, state); BLOCK];
                 let mut channel = std::array::from_fn(|c| c as u8 as i16);
-                let wanted =
-                    channel.map(|c| i16::from(shader::luminance_byte(shader::luminance(c.into(), red, state))));
+                let wanted = channel.map(|c| {
+                    shader::luminance_byte(shader::luminance(i64::from(c), red.into(), state.map(Binary::new))) as i16
+                });
                 let mut fused = channel;
                 dot::luminance::<true>(Lanes::default(), &factors, &mut fused);
                 dot::luminance::<false>(Lanes::default(), &factors, &mut channel);
