@@ -1,7 +1,7 @@
 //! Draws scenes by printed functions of whole pixels, and compares every stored word with the engine's.
 //!
-//! `NINEBIT_WHOLE_SCENES` is the number of random scenes, `NINEBIT_WHOLE_SEED` selects others, and `NINEBIT_WHOLE_EVERY` is a step through the scenes
-//! of the repository. `CC` names the C compiler and `NINEBIT_LOWER_CFLAGS` its options.
+//! `NINEBIT_WHOLE_SCENES` is the number of random scenes, `NINEBIT_WHOLE_SEED` selects others, `NINEBIT_WHOLE_EVERY` is a step through the scenes
+//! of the repository, and `NINEBIT_WHOLE_FRAMES` one through captured frames. `CC` names the C compiler and `NINEBIT_LOWER_CFLAGS` its options.
 #![allow(missing_docs, unreachable_pub, dead_code, reason = "modules share files of which each uses its part")]
 #![allow(clippy::unwrap_used, clippy::float_arithmetic, reason = "tests fail by panicking")]
 
@@ -24,6 +24,7 @@ use ninebit::plan::{Plan, PlanOptions};
 use ninebit::random::Random;
 use ninebit::state::{Policies, Scene};
 use ninebit_test_support::random_scene;
+use ninebit_vectors::captures;
 use proptest::strategy::{Strategy, ValueTree};
 use setting::{GLSL_COMPILER, any_policies, compiler, python, runner, setting, works};
 
@@ -122,6 +123,26 @@ fn printed_c_draws_committed_scenes() {
     if works(&compiler(), &["--version"]) {
         hold_committed(Way::C, setting("NINEBIT_WHOLE_EVERY").unwrap_or(16) as usize);
     }
+}
+
+/// Draws scenes of captured frames.
+#[test]
+fn printed_c_draws_captured_scenes() {
+    if !works(&compiler(), &["--version"]) {
+        return;
+    }
+    let step = setting("NINEBIT_WHOLE_FRAMES").unwrap_or(1501) as usize;
+    let mut drawn = 0;
+    for frame in captures::frames(&[]).unwrap().into_iter().step_by(step) {
+        let scene = frame.scene(&RenderOptions::default()).unwrap();
+        // Some programs only clear.
+        let Some(scene) = scene.filter(|scene| !scene.draws.is_empty()) else { continue };
+        let name = format!("{}/{}", frame.suite, frame.name);
+        hold(&scene, Policies::DEFAULT, Way::C, &name).unwrap();
+        drawn += 1;
+    }
+    println!("{drawn} frames");
+    assert!(drawn > 0);
 }
 
 #[test]
