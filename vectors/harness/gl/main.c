@@ -4,10 +4,10 @@
  *
  * RESULTS is a folder that exists; RESULTS/answers.zip holds all that was written. See README.md.
  */
+#include "archive.h"
 #include "batch.h"
 #include "draw.h"
 #include "gl.h"
-#include "picture.h"
 #include "scene.h"
 #include "surface.h"
 
@@ -19,7 +19,7 @@
 #define FILES 200
 
 /* The names of the files that were written, for the archive. */
-static char files[FILES][80];
+static char files[FILES][ARCHIVE_NAME];
 static int file_count;
 
 static void note(const char *name, const char *extension)
@@ -334,6 +334,27 @@ static int run_all(const char *pack, const char *folder)
     return ok && unit_count + scene_count > 0;
 }
 
+/* Writes all that was written into one file. */
+static void write_archive(const char *folder)
+{
+    static archive all;
+    char path[PATH_LENGTH];
+    int n, ok;
+    sprintf(path, "%.900s/answers.zip", folder);
+    ok = archive_open(&all, path);
+    for (n = 0; ok && n < file_count; n++) {
+        char *bytes;
+        size_t length;
+        sprintf(path, "%.900s/%.79s", folder, files[n]);
+        bytes = read_file(path, &length);
+        ok = bytes && archive_add(&all, files[n], (const unsigned char *)bytes, length);
+        free(bytes);
+    }
+    if (all.file) ok &= archive_close(&all);
+    if (ok) printf("%s/answers.zip holds all %d files\n", folder, file_count);
+    else fprintf(stderr, "%s/answers.zip was not written\n", folder);
+}
+
 int main(int count, char **arguments)
 {
     char root[65];
@@ -355,10 +376,7 @@ int main(int count, char **arguments)
         if (is_scene(arguments[1], arguments[n])) ok = draw_scene(arguments[1], arguments[2], arguments[n]);
         else ok = run_unit(arguments[1], arguments[2], arguments[n]);
     }
-    if (file_count > 1) {
-        if (archive_write(arguments[2], "answers.zip", files, file_count)) printf("%s/answers.zip holds all %d files\n", arguments[2], file_count);
-        else fprintf(stderr, "%s/answers.zip was not written\n", arguments[2]);
-    }
+    if (file_count > 1) write_archive(arguments[2]);
     surface_close();
     return ok ? 0 : 7;
 }

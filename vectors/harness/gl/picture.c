@@ -1,21 +1,9 @@
 #include "picture.h"
-#include "batch.h"
+#include "archive.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define PATH_LENGTH 1024
-
-unsigned long crc_bytes(unsigned long crc, const unsigned char *bytes, size_t count)
-{
-    while (count--) {
-        int bit;
-        crc ^= *bytes++;
-        for (bit = 0; bit < 8; bit++) crc = (crc >> 1) ^ (crc & 1 ? 0xedb88320UL : 0);
-    }
-    return crc;
-}
 
 static void big(unsigned char *to, unsigned long value)
 {
@@ -94,87 +82,4 @@ int picture_write(const char *path, const unsigned char *pixels, int width, int 
     free(raw);
     free(stream);
     return ok;
-}
-
-/* Numbers of a zip, the lowest byte first. */
-static void little(FILE *file, unsigned long value, int bytes)
-{
-    for (; bytes--; value >>= 8) putc((int)(value & 255), file);
-}
-
-typedef struct entry {
-    unsigned long crc, size, place;
-} entry;
-
-/* What both headers of an entry share, from the version on. */
-static void put_entry(FILE *file, const entry *of, const char *name)
-{
-    little(file, 10, 2);
-    little(file, 0, 2);
-    little(file, 0, 2);
-    /* The first day that a zip can name. */
-    little(file, 0, 2);
-    little(file, 1 << 5 | 1, 2);
-    little(file, of->crc, 4);
-    little(file, of->size, 4);
-    little(file, of->size, 4);
-    little(file, (unsigned long)strlen(name), 2);
-    little(file, 0, 2);
-}
-
-int archive_write(const char *folder, const char *name, char (*names)[80], int count)
-{
-    char path[PATH_LENGTH];
-    entry *entries = (entry *)calloc((size_t)count + 1, sizeof *entries);
-    unsigned long directory, end;
-    FILE *file;
-    int n, ok, kept = 0;
-    sprintf(path, "%.900s/%.80s", folder, name);
-    file = entries ? fopen(path, "wb") : NULL;
-    if (!file) {
-        free(entries);
-        return 0;
-    }
-    for (n = 0; n < count; n++) {
-        char *bytes;
-        size_t length = 0;
-        sprintf(path, "%.900s/%.80s", folder, names[n]);
-        bytes = read_file(path, &length);
-        if (!bytes) continue;
-        entries[n].crc = (crc_bytes(0xffffffffUL, (unsigned char *)bytes, length) ^ 0xffffffffUL) & 0xffffffffUL;
-        entries[n].size = (unsigned long)length;
-        /* 0 is the place of the first, so that one more tells an entry. */
-        entries[n].place = (unsigned long)ftell(file) + 1;
-        little(file, 0x04034b50UL, 4);
-        put_entry(file, &entries[n], names[n]);
-        fputs(names[n], file);
-        fwrite(bytes, 1, length, file);
-        free(bytes);
-    }
-    directory = (unsigned long)ftell(file);
-    for (n = 0; n < count; n++) {
-        if (!entries[n].place) continue;
-        little(file, 0x02014b50UL, 4);
-        little(file, 10, 2);
-        put_entry(file, &entries[n], names[n]);
-        little(file, 0, 2);
-        little(file, 0, 2);
-        little(file, 0, 2);
-        little(file, 0, 4);
-        little(file, entries[n].place - 1, 4);
-        fputs(names[n], file);
-        kept++;
-    }
-    end = (unsigned long)ftell(file);
-    little(file, 0x06054b50UL, 4);
-    little(file, 0, 2);
-    little(file, 0, 2);
-    little(file, (unsigned long)kept, 2);
-    little(file, (unsigned long)kept, 2);
-    little(file, end - directory, 4);
-    little(file, directory, 4);
-    little(file, 0, 2);
-    free(entries);
-    ok = !ferror(file);
-    return fclose(file) == 0 && ok;
 }
