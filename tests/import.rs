@@ -4,6 +4,10 @@
 use crate::bench::Bench;
 use crate::repository::at;
 
+use ninebit::engine::{RenderOptions, render};
+use ninebit::limits::Limits;
+use ninebit::state::Policies;
+
 /// A log of a triangle of immediate vertices on a surface of 16 x 16, with one stage of combiners.
 const LOG: &str = "\
 nv2a_pgraph_method 0: 0x97 -> 0x0200 NV097_SET_SURFACE_CLIP_HORIZONTAL[0] 0x100000
@@ -55,8 +59,64 @@ fn a_scene_goes_there_and_back() {
             std::fs::remove_file(bench.path(picture)).unwrap();
         }
     }
-    let text = bench.run(&format!("export {scene} --to pgraph-c -o console")).text();
-    assert!(text.contains("shadow-map.c"), "{text}");
+}
+
+/// One program draws all scenes; what a console answers is told as the answer of a card is.
+#[test]
+fn a_console_answers() {
+    let bench = Bench::new();
+    let folder = at("vectors/scenes/deciding");
+    let left_out = at("vectors/scenes/fog/corridor-nv10.ron");
+    bench.write("broken.ron", "(version: 1)");
+    let command = format!("export {} {} --to pgraph-c -o console", folder.display(), left_out.display());
+    let text = bench.run(&command).text();
+    let last: Vec<&str> = text.lines().rev().take(2).collect();
+    assert!(last[1].starts_with("corridor-nv10            left out: draw 0: linear fog that is"), "{text}");
+    assert!(text.contains("CMB-8-dot                     509 words"), "{text}");
+    let root = last[0].strip_prefix("root ").unwrap();
+    for file in
+        ["main.c", "archive.c", "program.c", "scene-15.c", "bin/memory-15.bin", "scenes/CMB-8-dot@CMB-8=each.png"]
+    {
+        assert!(bench.path("console").join(file).exists(), "{file}");
+    }
+    // A scene that is not read is told, and the others are drawn.
+    bench.run("export broken.ron --to pgraph-c -o broken").failed(3, "NB");
+    assert!(!bench.path("broken").exists());
+    let run = bench.run(&format!("export broken.ron {} --to pgraph-c -o others", folder.display()));
+    assert!(run.status == 3 && run.stderr.contains("broken.ron") && bench.path("others/scene-15.c").exists());
+
+    let answer = |name: &str, policies: Policies| {
+        let plan = ninebit_scene::load(&folder.join(format!("{name}.ron")), &Limits::default()).unwrap().plan;
+        let surface = render(&plan.under(policies), &RenderOptions::default()).surfaces.swap_remove(0);
+        let mut bytes = b"ninebit-surface 1 X8R8G8B8O 256 192 pitch 1024\n".to_vec();
+        bytes.extend(surface.words.iter().flat_map(|word| word.to_le_bytes()));
+        bytes
+    };
+    std::fs::create_dir(bench.path("answers")).unwrap();
+    let mut device = serde_json::json!({
+        "format": "ninebit-device-1", "pack": root, "vendor": "NVIDIA", "renderer": "NV2A 02a000a3", "version": "kernel 1.0.5838.1",
+        "surface": "memory", "surface_format": "that of each scene", "extensions": "",
+    });
+    bench.write("answers/device.json", device.to_string());
+    bench.write("answers/CMB-7-sum.surface", answer("CMB-7-sum", Policies::DEFAULT));
+    let text = bench.run("vectors compare console answers").text();
+    assert!(
+        text.contains("NV2A 02a000a3, kernel 1.0.5838.1\n") && text.contains("CMB-7-sum               as expected\n"),
+        "{text}"
+    );
+    assert!(text.contains("CMB-8-dot               not asked\n") && !text.contains("corridor-nv10"), "{text}");
+    let mut policies = Policies::DEFAULT;
+    policies.set("CMB-8=each").unwrap();
+    bench.write("answers/CMB-8-dot.surface", answer("CMB-8-dot", policies));
+    let run = bench.run("vectors compare console answers --format json");
+    let told: serde_json::Value = serde_json::from_slice(&run.stdout).unwrap();
+    let of_dot = told["scenes"].as_array().unwrap().iter().find(|told| told["scene"] == "CMB-8-dot").unwrap();
+    assert!(run.status == 1 && of_dot["reading"] == "as CMB-8=each", "{told}");
+    bench.write("answers/CMB-8-dot.surface", "ninebit-surface 1 X8R8G8B8O 256 192 pitch 1024\n");
+    bench.run("vectors compare console answers").failed(3, "NB1030");
+    device["pack"] = "0".into();
+    bench.write("answers/device.json", device.to_string());
+    bench.run("vectors compare console answers").failed(3, "NB1031");
 }
 
 #[test]
@@ -153,10 +213,11 @@ fn wrong_inputs_are_refused() {
     bench.run("import --memory ram.bin --push-buffer 0x8..0x4 --explain").failed(2, "two addresses");
     assert!(!bench.path("out").exists());
     bench.run("import game.log --class 0x44").failed(2, "0x97");
-    let scene = at("vectors/scenes/dot3/lit-stone.ron");
-    bench.run(&format!("export {} --to pgraph-c -o out", scene.display())).failed(2, "no GeForce 256");
     let scene = at("vectors/scenes/fog/corridor-nv10.ron");
-    bench.run(&format!("export {} --to methods -o out", scene.display())).failed(3, "NB1610");
+    for form in ["methods", "pgraph-c"] {
+        bench.run(&format!("export {} --to {form} -o out", scene.display())).failed(3, "NB1610");
+    }
+    bench.run(&format!("export {0} {0} --to methods -o out", scene.display())).failed(2, "only a program");
     assert!(!bench.path("out").exists());
 }
 

@@ -76,3 +76,11 @@ pub mod meshes {
         TORUS "light_control_test_mesh_torus.mesh.gz",
     }
 }
+
+/// What programs that ask a chip leave their answers by: a zip without compression, in C.
+pub mod archive {
+    /// The functions.
+    pub const SOURCE: &str = include_str!("harness/gl/archive.c");
+    /// Their declarations.
+    pub const HEADER: &str = include_str!("harness/gl/archive.h");
+}

@@ -2,6 +2,7 @@
 
 mod celsius;
 pub mod class;
+pub mod console;
 mod draw;
 pub mod dumps;
 pub mod explain;

@@ -87,7 +87,7 @@ pub enum Layout {
 
 impl Layout {
     /// Returns the bytes that an image takes from its first to its last; `size` has columns, rows and layers, of texels of so many bytes.
-    fn extent(self, [width, height, depth]: [u32; 3], bytes: u64) -> u64 {
+    pub(crate) fn extent(self, [width, height, depth]: [u32; 3], bytes: u64) -> u64 {
         let [width, rows] = [width.into(), u64::from(height) * u64::from(depth)];
         match self {
             Layout::Swizzled => width * rows * bytes,

@@ -111,7 +111,8 @@ enum Command {
     Import(import::Arguments),
     /// Write a scene as methods of the Xbox's 3D class, with the memory that they read
     ///
-    /// `ninebit import` makes the same picture of them. Vertices are those that reach the rasteriser.
+    /// `ninebit import` makes the same picture of them. Vertices are those that reach the rasteriser. Several scenes become one program for a console,
+    /// whose answers `ninebit vectors compare` tells.
     Export(export::Arguments),
     /// Print the plan of a scene: what each draw computes, what is left out and why, what it costs
     Explain(explain::Arguments),

@@ -6,7 +6,7 @@ mod compare;
 mod diff;
 mod export;
 mod list;
-mod scenes;
+pub(super) mod scenes;
 mod show;
 mod sweep;
 

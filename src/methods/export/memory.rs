@@ -13,7 +13,7 @@ use crate::draw::texture::{BORDERED_SIDE, FACE_BYTES};
 use crate::memory::{LARGEST_MEMORY, Layout, bytes, raw};
 
 /// Where the first thing lies.
-const FIRST: u32 = 0x0010_0000;
+pub const FIRST: u32 = 0x0010_0000;
 /// Surfaces and textures begin at multiples of this.
 const ALIGNMENT: u32 = 256;
 
@@ -35,7 +35,7 @@ pub(super) struct MemoryMap {
 }
 
 /// Returns the bytes from row to row of a surface or a linear texture.
-pub(super) fn pitch(width: u32, bytes: u32) -> u32 {
+pub(crate) fn pitch(width: u32, bytes: u32) -> u32 {
     (width * bytes).next_multiple_of(64)
 }
 

@@ -12,7 +12,9 @@ use std::fmt;
 use ninebit::plan::Plan;
 use ninebit::state::{Profile, Scene};
 
-pub use print::{console_program, push_buffer, trace};
+pub use memory::FIRST;
+pub(crate) use memory::pitch;
+pub use print::{push_buffer, trace};
 
 use crate::celsius;
 use crate::class::{self, Family};
@@ -30,6 +32,8 @@ pub struct Methods {
     pub memory: Vec<u8>,
     /// The places of the scene's targets in memory, in their order.
     pub surfaces: Vec<u32>,
+    /// Whether the targets are swizzled.
+    pub swizzled: Vec<bool>,
 }
 
 /// The reason for which a scene has no methods.
@@ -139,8 +143,8 @@ pub fn export(scene: &Scene, plan: &Plan) -> Result<Methods, ExportError> {
     if family == Family::Kelvin {
         words.send(class::FLIP_STALL, 0);
     }
-    let surfaces = placed.surfaces.clone();
-    Ok(Methods { family, writes: words.writes, memory: placed.bytes, surfaces })
+    let MemoryMap { bytes: memory, surfaces, swizzled, .. } = placed;
+    Ok(Methods { family, writes: words.writes, memory, surfaces, swizzled })
 }
 
 /// Sends the vertex program that hands vertices through, and makes it the transform.

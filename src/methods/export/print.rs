@@ -2,13 +2,8 @@
 
 use std::fmt::Write;
 
-use ninebit::state::Target;
-
 use super::Methods;
-use super::memory::pitch;
-use crate::class::{self, Family};
-
-const CONSOLE: &str = include_str!("console.c");
+use crate::class::Family;
 
 /// Writes methods as emulators trace them: Kelvin's as xemu does, a line each, with the method's name; Celsius's as Bochs does, with numbers that
 /// count words.
@@ -29,30 +24,6 @@ pub fn trace(methods: &Methods) -> String {
         let _ = writeln!(text, "nv2a_pgraph_method 0: 0x{class:x} -> 0x{method:04x} {name}[{place}] 0x{word:x}");
     }
     text
-}
-
-/// Writes methods as a program in C for nxdk, which draws them on a console. `name` is that of the file that it writes there, `target` the surface that
-/// the file holds.
-pub fn console_program(methods: &Methods, name: &str, (index, target): (usize, &Target)) -> String {
-    let mut writes = String::with_capacity(24 * methods.writes.len());
-    for (method, word) in methods.writes.iter().filter(|(method, _)| *method != class::FLIP_STALL) {
-        // Writing to a string cannot fail.
-        let _ = writeln!(writes, "    {{0x{method:x}, 0x{word:x}}},");
-    }
-    // A file's name on a console has 42 characters; letters, digits and `-` stand for themselves in C as well.
-    let name: String = name.chars().filter(|c| c.is_ascii_alphanumeric() || *c == '-').take(38).collect();
-    let bytes = target.format.bytes();
-    let parts = [
-        ("@NAME@", name),
-        ("@WRITES@", writes),
-        ("@MEMORY@", methods.memory.len().to_string()),
-        ("@WIDTH@", target.width.to_string()),
-        ("@HEIGHT@", target.height.to_string()),
-        ("@PITCH@", pitch(target.width, bytes).to_string()),
-        ("@BYTES@", bytes.to_string()),
-        ("@PLACE@", methods.surfaces[index].to_string()),
-    ];
-    parts.iter().fold(CONSOLE.to_owned(), |text, (part, content)| text.replace(part, content))
 }
 
 /// Writes methods as words of a push buffer: a header for each run of methods.

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use ninebit::engine::{RenderOptions, render};
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
-use ninebit::state::{Draw, Profile, Scene, SurfaceFormat, Target};
-use ninebit_methods::export::{Methods, console_program, export, push_buffer, trace};
+use ninebit::state::{Profile, Scene};
+use ninebit_methods::export::{Methods, export, push_buffer, trace};
 use ninebit_methods::import::{Options, import};
 use ninebit_methods::memory::Memory;
 use ninebit_methods::state::State;
@@ -140,36 +140,6 @@ impl std::fmt::Display for Report {
         let Report { same, wrong, refused } = self;
         writeln!(f, "{} came back, {} differ; refused: {refused:#?}", same.len(), wrong.len())?;
         wrong.iter().try_for_each(|line| writeln!(f, "{line}"))
-    }
-}
-
-/// Its own headers are not here: a stub declares what it uses.
-#[test]
-fn the_console_s_program_is_c() {
-    let scene = Scene {
-        profile: Profile::Nv2a,
-        targets: vec![Target::new(8, 8, SurfaceFormat::A8R8G8B8)],
-        draws: vec![Draw::rectangle(4.0, 4.0)],
-        ..Scene::default()
-    };
-    let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
-    let methods = export(&scene, &plan).unwrap();
-    let text = console_program(&methods, "a \"wall\" of\nbricks", (0, &scene.targets[0]));
-    assert!(!text.contains('@') && text.contains("E:\\\\awallofbricks.bin"), "{text}");
-    let folder = tempfile::tempdir().unwrap();
-    for header in ["hal/debug.h", "pbkit/pbkit.h", "windows.h", "xboxkrnl/xboxkrnl.h"] {
-        let path = folder.path().join(header);
-        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(path, include_str!("console/stub.h")).unwrap();
-    }
-    let source = folder.path().join("scene.c");
-    std::fs::write(&source, text).unwrap();
-    let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".to_owned());
-    let mut command = std::process::Command::new(compiler);
-    command.args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-I"]).arg(folder.path()).arg(&source);
-    match command.output() {
-        Ok(output) => assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr)),
-        Err(error) => println!("no compiler for C, so the program was not read: {error}"),
     }
 }
 

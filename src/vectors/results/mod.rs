@@ -32,6 +32,9 @@ const DEVICE_FORMAT: &str = "ninebit-device-1";
 /// File name of the device file.
 const DEVICE: &str = "device.json";
 
+/// Advice for results of another pack.
+const OTHER_PACK: &str = "name the pack that was drawn, or draw this one";
+
 /// Advice for incomplete results.
 const AGAIN: &str = "draw the pack again";
 
@@ -125,14 +128,7 @@ pub struct Results {
 /// # Errors
 /// Returns an error if a file is missing, truncated, changed, of another version, or of another pack.
 pub fn open(folder: &Path, manifest: &Manifest) -> Result<Results, VectorError> {
-    let device_path = folder.join(DEVICE);
-    let missing = "name the folder of results that vectors/harness/gl wrote";
-    let of_another_pack = "name the pack that was drawn, or draw this one";
-    let device = device(&read_text(&device_path, Kind::Regular, limits::DEVICE, missing)?, &device_path)?;
-    if device.pack != manifest.root {
-        let message = format!("these are results of the pack {:.12}, not of {:.12}", device.pack, manifest.root);
-        return Err(VectorError::file("NB1031", &device_path, message, of_another_pack));
-    }
+    let device = device(folder, &manifest.root)?;
     let entries = std::fs::read_dir(folder).map_err(|error| VectorError::unreadable(folder, error))?;
     let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
     paths.retain(|path| !path.file_name().is_some_and(is_leftover));
@@ -156,23 +152,33 @@ pub fn open(folder: &Path, manifest: &Manifest) -> Result<Results, VectorError> 
             [&manifest.profile, &manifest.level, &manifest.seed.to_string(), &manifest.behaviour_rev.to_string()];
         if results.asked.iter().zip(of_pack).any(|(asked, own)| asked != own) {
             let message = "its chip, level, seed or behaviour is not the pack's";
-            return Err(VectorError::file("NB1031", &path, message, of_another_pack));
+            return Err(VectorError::file("NB1031", &path, message, OTHER_PACK));
         }
         units.push(results);
     }
     Ok(Results { device, units })
 }
 
-/// Reads a device file.
-fn device(text: &str, path: &Path) -> Result<Device, VectorError> {
+/// Reads the device file of a folder of results.
+///
+/// # Errors
+/// Returns an error if it is missing, of another version, or of a pack with another root digest.
+pub fn device(folder: &Path, root: &str) -> Result<Device, VectorError> {
+    let path = folder.join(DEVICE);
+    let missing = "name the folder of results that the program for the chip wrote";
+    let text = read_text(&path, Kind::Regular, limits::DEVICE, missing)?;
     let broken = |error: serde_json::Error| {
-        VectorError::line("NB1033", path, error.line(), format!("not a device file: {error}"), AGAIN)
+        VectorError::line("NB1033", &path, error.line(), format!("not a device file: {error}"), AGAIN)
     };
-    let device: Device = serde_json::from_str(text).map_err(broken)?;
+    let device: Device = serde_json::from_str(&text).map_err(broken)?;
     if device.format != DEVICE_FORMAT {
         let message = format!("the format is `{:.60}`, not `{DEVICE_FORMAT}`", device.format);
         let help = "use the program that wrote it, or draw the pack again";
-        return Err(VectorError::file("NB1003", path, message, help));
+        return Err(VectorError::file("NB1003", &path, message, help));
+    }
+    if device.pack != root {
+        let message = format!("these are results of the pack {:.12}, not of {root:.12}", device.pack);
+        return Err(VectorError::file("NB1031", &path, message, OTHER_PACK));
     }
     Ok(device)
 }

@@ -9,10 +9,10 @@ use serde_json::json;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// The folder of the pack that was drawn
+    /// The folder of the pack, or of the console's program, that was drawn
     #[arg(value_name = "PACK")]
     pack: PathBuf,
-    /// The folder of results that vectors/harness/gl wrote
+    /// The folder of results: an unpacked archive of vectors/harness/gl, or of a console's program
     #[arg(value_name = "RESULTS")]
     results: PathBuf,
     /// A file of differences that are known: unit, maximum, count, reason
@@ -28,16 +28,15 @@ pub(crate) struct Arguments {
 
 /// Compares results with a pack.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if let Some(root) = scenes::root(&arguments.pack) {
+        return compare_scenes(arguments, &root);
+    }
     let waivers = arguments.waivers.as_deref().map(waiver::read).transpose()?.unwrap_or_default();
     let (manifest, tables) = pack::open(&arguments.pack)?;
     let results = results::open(&arguments.results, &manifest)?;
     let comparison = compare::compare(&tables, &results, &waivers, arguments.rows)?;
     let answers = scenes::compare(&arguments.pack, &arguments.results)?;
     let json = || {
-        let answers: Vec<_> = answers
-            .iter()
-            .map(|answer| json!({ "scene": answer.scene, "reading": answer.reading, "differing": answer.differing }))
-            .collect();
         let value = json!({
             "format": "ninebit-comparison-1",
             "pack": manifest.root,
@@ -46,16 +45,44 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             "behaviour_rev": manifest.behaviour_rev,
             "device": results.device,
             "comparison": comparison,
-            "scenes": answers,
+            "scenes": scenes_json(&answers),
         });
         format!("{value:#}")
     };
     arguments.format.print(|| text(&manifest, &results.device, &comparison) + &scenes_text(&answers), json)?;
-    if comparison.is_clean() && answers.iter().all(|answer| answer.differing == 0) {
-        Ok(())
-    } else {
-        Err(Failure::difference())
-    }
+    end(comparison.is_clean(), &answers)
+}
+
+/// Compares what a console drew with the scenes of its program.
+fn compare_scenes(arguments: &Arguments, root: &str) -> Result<(), Failure> {
+    let device = results::device(&arguments.results, root)?;
+    let answers = scenes::compare(&arguments.pack, &arguments.results)?;
+    let json = || {
+        let value = json!({
+            "format": "ninebit-comparison-1",
+            "pack": root,
+            "device": device,
+            "comparison": Comparison { units: Vec::new(), explanation: None },
+            "scenes": scenes_json(&answers),
+        });
+        format!("{value:#}")
+    };
+    let text = || format!("{}scenes {root:.12}\n{}", device_text(&device), scenes_text(&answers));
+    arguments.format.print(text, json)?;
+    end(true, &answers)
+}
+
+fn end(is_clean: bool, answers: &[scenes::Answer]) -> Result<(), Failure> {
+    if is_clean && answers.iter().all(|answer| answer.differing == 0) { Ok(()) } else { Err(Failure::difference()) }
+}
+
+fn scenes_json(answers: &[scenes::Answer]) -> serde_json::Value {
+    let value = |answer: &scenes::Answer| json!({ "scene": answer.scene, "reading": answer.reading, "differing": answer.differing });
+    answers.iter().map(value).collect()
+}
+
+fn device_text(device: &Device) -> String {
+    [&device.vendor, &device.renderer, &device.version].map(|name| shown::name(name)).join(", ") + "\n"
 }
 
 fn scenes_text(answers: &[scenes::Answer]) -> String {
@@ -68,7 +95,7 @@ fn scenes_text(answers: &[scenes::Answer]) -> String {
 }
 
 fn text(manifest: &Manifest, device: &Device, comparison: &Comparison) -> String {
-    let mut text = [&device.vendor, &device.renderer, &device.version].map(|name| shown::name(name)).join(", ") + "\n";
+    let mut text = device_text(device);
     let (profile, level, revision) = (&manifest.profile, &manifest.level, manifest.behaviour_rev);
     let _ = writeln!(text, "{profile} {level}, behaviour {revision}, pack {:.12}\n", manifest.root);
     let _ = writeln!(

@@ -34,9 +34,9 @@ pub(crate) struct Arguments {
     /// Also write draws for a graphics card, for the program in vectors/harness/gl: the view `gpu`
     #[arg(long)]
     gpu_batches: bool,
-    /// Also write the scenes of this folder as draws for a graphics card, with the picture of each reading: vectors/scenes/deciding
-    #[arg(long, value_name = "DIR")]
-    scenes: Option<PathBuf>,
+    /// Also write this scene, or those of this folder, as draws for a graphics card, with the picture of each reading: vectors/scenes/deciding; may be given several times
+    #[arg(long, value_name = "PATH")]
+    scenes: Vec<PathBuf>,
 }
 
 /// Writes a pack.
@@ -66,8 +66,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             rows => writeln!(text, ", {rows} left out: at most {BATCHES} batches"),
         };
     }
-    if let Some(folder) = &arguments.scenes {
-        text.push_str(&scenes::export(&arguments.output, folder, profile)?);
+    if !arguments.scenes.is_empty() {
+        text.push_str(&scenes::export(&arguments.output, &arguments.scenes, profile)?);
     }
     let _ = writeln!(text, "root {}", manifest.root);
     Ok(write_text(&text)?)
