@@ -443,24 +443,77 @@ fn batches_ask_rows_of_their_table() {
 #[test]
 fn scenes_are_asked_and_named_by_their_reading() {
     let asked = Asked::new();
-    let scenes = at("vectors/scenes/deciding").display().to_string();
+    let scenes = ["vectors/scenes/deciding", "vectors/scenes/fog/corridor.ron", "vectors/harness/gl/scenes"];
+    let scenes = scenes.map(|scenes| at(scenes).display().to_string());
     let mut arguments = vec!["export"];
     UNITS.iter().for_each(|unit| arguments.extend(["--unit", unit]));
-    arguments.extend(["--scenes", &scenes, "-o", "pack"]);
+    scenes.iter().for_each(|scenes| arguments.extend(["--scenes", scenes]));
+    arguments.extend(["-o", "pack"]);
     let output = asked.run(&arguments);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let text = String::from_utf8(output.stdout).unwrap();
-    assert!(text.contains("TSH-6-dependent          left out: a texture shader"), "{text}");
+    let left_out: Vec<&str> = text.lines().filter(|line| line.contains("left out: ")).collect();
+    assert_eq!(
+        left_out,
+        [
+            "DEP-6-slope              left out: a w buffer",
+            "FOG-3-third              left out: fog by parameters that no range or density gives",
+        ]
+    );
     let place = asked.folder.path().join("pack/scenes");
-    let lines = fs::read_to_string(place.join("CMB-9-scale.scene.txt")).unwrap();
-    let raw = fs::read(place.join("CMB-9-scale.scene.raw")).unwrap();
-    let mut draws = 0;
-    for line in lines.lines().filter(|line| line.starts_with("vertices ")) {
-        let [count, first] = [2, 3].map(|n| line.split(' ').nth(n).unwrap().parse::<usize>().unwrap());
-        assert!(count % 3 == 0 && first + 48 * count <= raw.len(), "{line}");
-        draws += 1;
+    let files = |name: &str| {
+        let lines = fs::read_to_string(place.join(format!("{name}.scene.txt"))).unwrap();
+        (lines, fs::read(place.join(format!("{name}.scene.raw"))).unwrap())
+    };
+    for (name, draws, parts) in [
+        (
+            "CMB-9-scale",
+            12,
+            &["needs GL_NV_register_combiners2", "scissor 0 0 ", "combiners 1", "blend FUNC_REVERSE_SUBTRACT ONE ONE"]
+                [..],
+        ),
+        (
+            "TSH-6-dependent",
+            3,
+            &["needs GL_NV_texture_shader", "shader 1 SHADER_OPERATION_NV DEPENDENT_GB_TEXTURE_2D_NV"],
+        ),
+        (
+            "SHD-1-filter",
+            3,
+            &["needs GL_ARB_shadow", "depths 0 2 1 16 0", "compare 0 LESS", "env 0 TEXTURE_ENV_MODE REPLACE"],
+        ),
+        ("TEX-17-weights", 6, &["needs GL_EXT_texture_filter_anisotropic", "anisotropy 0 4"]),
+        ("corridor", 1, &["needs GL_EXT_fog_coord", "fog_density EXP2 ", "fog_color 150 160 180"]),
+        (
+            "depths",
+            4,
+            &[
+                "clear 9 8 7 255",
+                "mask 0 0 0 0",
+                "mask 1 1 1 0",
+                "clear_depth 12582911 3",
+                "depth LESS 0",
+                "offset -1 -2",
+                "stencil_test EQUAL 3 255 6 KEEP KEEP INVERT",
+            ],
+        ),
+        ("fogs", 2, &["needs GL_EXT_secondary_color", "fog_range 1 3", "fog_density EXP2 0.4999", "color_sum"]),
+    ] {
+        let (lines, raw) = files(name);
+        let vertices: Vec<&str> = lines.lines().filter(|line| line.starts_with("vertices ")).collect();
+        for line in &vertices {
+            let [count, first] = [2, 3].map(|n| line.split(' ').nth(n).unwrap().parse::<usize>().unwrap());
+            assert!(count % 3 == 0 && first + 92 * count <= raw.len(), "{line}");
+        }
+        assert_eq!(vertices.len(), draws, "{lines}");
+        for part in parts {
+            assert!(lines.lines().any(|line| line.starts_with(part)), "{part}: {lines}");
+        }
     }
-    assert!(draws > 2 && lines.contains("scissor "), "{lines}");
+    // What OpenGL computes without combiners asks for none.
+    for name in ["SHD-1-filter", "TEX-17-weights", "depths", "fogs"] {
+        assert!(!files(name).0.contains("combiners"), "{name}");
+    }
     let answers = asked.results();
     fs::copy(place.join("CMB-3-expand.png"), answers.join("CMB-3-expand.png")).unwrap();
     let compared = || {

@@ -161,11 +161,11 @@ impl Sender<'_> {
 
     /// Returns the fog coordinate of a vertex.
     fn fog(&self, vertex: &Vertex) -> Result<f32, ExportError> {
-        match (vertex.fog_coordinate, self.draw.fog.function) {
-            (Some(coordinate), _) => Ok(coordinate),
-            (None, Some(function)) if !function.takes_e() => Ok(vertex.fog),
-            _ => refuse("the fog coordinate of a vertex is not known"),
-        }
+        let known = match self.draw.fog.function {
+            Some(function) => function.coordinate(vertex),
+            None => vertex.fog_coordinate,
+        };
+        known.map_or_else(|| refuse("the fog coordinate of a vertex is not known"), Ok)
     }
 
     fn color(&mut self, attribute: usize, color: VertexColor) {

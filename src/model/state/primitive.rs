@@ -275,6 +275,11 @@ impl FogFunction {
     pub fn takes_e(&self) -> bool {
         self.per_vertex || !self.mode.is_linear()
     }
+
+    /// Returns the coordinate of a vertex, if it is known: a vertex that passes e may not say what it is of.
+    pub fn coordinate(&self, vertex: &Vertex) -> Option<f32> {
+        vertex.fog_coordinate.or((!self.takes_e()).then_some(vertex.fog))
+    }
 }
 
 /// Fog colour, and how the fog of the vertices becomes FOG.a. FOG.a is 255 if fog is disabled.

@@ -23,11 +23,14 @@ fn bytes(values: [f32; 2]) -> Vec<u8> {
     values.map(f32::to_le_bytes).concat()
 }
 
+/// OpenGL's names of stencil operations, in the order of their values.
+pub(super) const STENCIL_OPERATIONS: &str = "KEEP ZERO REPLACE INCR DECR INVERT INCR_WRAP DECR_WRAP";
+
 /// Reads the stored byte from the stencil. A second draw without a depth test, whose fragments have the colour 1, shows whether the test passes.
 pub(super) fn stencil_test(case: &Case) -> Option<Placement> {
     let function = case.word("cfg.function", super::fixed::FUNCTIONS);
     let operations = ["cfg.fail", "cfg.depth_fail", "cfg.pass"];
-    let words = operations.map(|name| case.word(name, "KEEP ZERO REPLACE INCR DECR INVERT INCR_WRAP DECR_WRAP"));
+    let words = operations.map(|name| case.word(name, STENCIL_OPERATIONS));
     let wraps = operations.map(|name| case.choice::<StencilOperation>(name));
     let wraps = wraps.iter().any(|op| matches!(op, StencilOperation::Increment | StencilOperation::Decrement));
     let names = ["in.reference", "in.mask", "in.write_mask", "in.stored", "in.depth_passes"];

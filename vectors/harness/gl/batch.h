@@ -6,7 +6,7 @@
 
 #define BATCH_WORDS 32
 #define BATCH_SOURCES 8
-#define BATCH_NEEDS 8
+#define BATCH_NEEDS 16
 #define BATCH_COLUMNS 16
 #define BATCH_WIDTH 256
 #define BATCH_ROWS 65536L

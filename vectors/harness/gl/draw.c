@@ -13,12 +13,6 @@ static int unit_of(const char *name)
     return name[strlen(name) - 1] - '0';
 }
 
-static int combiners(void)
-{
-    return gl_has("GL_NV_register_combiners") && gl.CombinerParameteriNV && gl.CombinerParameterfvNV && gl.CombinerInputNV
-        && gl.CombinerOutputNV && gl.FinalCombinerInputNV;
-}
-
 int draw_supports(const batch_file *file, const batch *from, const char **missing)
 {
     int n;
@@ -39,7 +33,7 @@ int draw_supports(const batch_file *file, const batch *from, const char **missin
     *missing = "eight bits of stencil beside a depth buffer";
     if (batch_find(from, "stencil0") && (drawing_max(GL_STENCIL_BITS) < 8 || drawing_max(GL_DEPTH_BITS) < 1)) return 0;
     *missing = "a function that the extension should have";
-    if (strcmp(from->path, "combiners") == 0 && !combiners()) return 0;
+    if (strcmp(from->path, "combiners") == 0 && !drawing_combiners()) return 0;
     if (batch_find(from, "secondary") && !gl.SecondaryColor3ub) return 0;
     if (batch_find(from, "fog0") && !gl.FogCoordf) return 0;
     if (batch_find(from, "blocks0") && !gl.CompressedTexImage2D) return 0;

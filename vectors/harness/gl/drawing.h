@@ -29,6 +29,12 @@ int drawing_fail(drawing *d, const char *message, const char *detail);
 /* A limit of the implementation. */
 int drawing_max(GLenum name);
 
+/* Whether there are register combiners, with their functions. */
+int drawing_combiners(void);
+
+/* Fog by a coordinate of each vertex. */
+void drawing_fog(GLenum mode);
+
 /* Makes a texture unit the one that calls are about. */
 void drawing_activate(int unit);
 

@@ -22,6 +22,12 @@ void drawing_activate(int unit)
     if (gl.ActiveTexture) gl.ActiveTexture(GL_TEXTURE0 + (GLenum)unit);
 }
 
+int drawing_combiners(void)
+{
+    return gl_has("GL_NV_register_combiners") && gl.CombinerParameteriNV && gl.CombinerParameterfvNV && gl.CombinerInputNV
+        && gl.CombinerOutputNV && gl.FinalCombinerInputNV;
+}
+
 void drawing_color(const long *bytes, GLfloat *color)
 {
     int n;
@@ -42,18 +48,23 @@ static int set_portion(const GLint *values)
     return 1;
 }
 
-/* Fog by a coordinate of each vertex, with a density of 1. */
-static void set_fog(GLfloat mode)
+void drawing_fog(GLenum mode)
 {
     GLfloat values[4] = { 0, 0, 0, 0 };
     gl.Enable(GL_FOG);
-    gl.Fogfv(GL_FOG_COLOR, values);
-    values[0] = mode;
+    values[0] = (GLfloat)mode;
     gl.Fogfv(GL_FOG_MODE, values);
-    values[0] = 1;
-    gl.Fogfv(GL_FOG_DENSITY, values);
     values[0] = (GLfloat)GL_FOG_COORDINATE;
     gl.Fogfv(GL_FOG_COORDINATE_SOURCE, values);
+}
+
+/* Black fog of density 1. */
+static void set_fog(GLenum mode)
+{
+    static const GLfloat black[4] = { 0, 0, 0, 0 }, one[4] = { 1, 0, 0, 0 };
+    drawing_fog(mode);
+    gl.Fogfv(GL_FOG_COLOR, black);
+    gl.Fogfv(GL_FOG_DENSITY, one);
 }
 
 int set_state(drawing *d, char **words, int count)
@@ -95,7 +106,7 @@ int set_state(drawing *d, char **words, int count)
     } else if (strcmp(what, "depth_test") == 0 && count == 2) {
         d->depth = v[1];
     } else if (strcmp(what, "fog") == 0 && count == 2) {
-        set_fog((GLfloat)v[1]);
+        set_fog((GLenum)v[1]);
     } else if (strcmp(what, "blend") == 0 && count == 4) {
         if (gl.BlendEquation) gl.BlendEquation((GLenum)v[1]);
         else if (v[1] != GL_FUNC_ADD) return drawing_fail(d, "there is no glBlendEquation", "");

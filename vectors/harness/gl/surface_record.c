@@ -1,5 +1,5 @@
-/* No OpenGL at all: an implementation that writes every call to the file that NINEBIT_RECORD names, and says that it has the register
- * combiners. With it a test compares what is called with what the batches say. */
+/* No OpenGL at all: an implementation that writes every call to the file that NINEBIT_RECORD names, and says that it has whatever scenes
+ * and combiners need. With it a test compares what is called with what the batches say. */
 #include "gl.h"
 #include "surface.h"
 
@@ -9,6 +9,7 @@
 #include <string.h>
 
 static FILE *out;
+static GLuint texture_count;
 
 static void record(const char *format, ...)
 {
@@ -33,7 +34,9 @@ static const GLubyte *GL_CALL recorded_GetString(GLenum name)
 {
     switch (name) {
     case GL_EXTENSIONS:
-        return (const GLubyte *)"GL_ARB_multitexture GL_EXT_secondary_color GL_NV_register_combiners GL_NV_register_combiners2";
+        return (const GLubyte *)"GL_ARB_depth_clamp GL_ARB_depth_texture GL_ARB_multitexture GL_ARB_shadow GL_ARB_texture_cube_map GL_ARB_texture_mirrored_repeat "
+                                "GL_EXT_fog_coord GL_EXT_secondary_color GL_EXT_shadow_funcs GL_EXT_stencil_wrap GL_EXT_texture_filter_anisotropic "
+                                "GL_NV_register_combiners GL_NV_register_combiners2 GL_NV_texture_shader";
     case GL_VERSION:
         return (const GLubyte *)"1.2";
     default:
@@ -48,7 +51,7 @@ static GLenum GL_CALL recorded_GetError(void)
 
 static void GL_CALL recorded_GetIntegerv(GLenum name, GLint *values)
 {
-    *values = name == GL_MAX_GENERAL_COMBINERS_NV ? 8 : name == GL_MAX_TEXTURE_UNITS ? 4 : name == GL_MAX_TEXTURE_SIZE ? 2048 : name == GL_SAMPLE_BUFFERS ? 0 : 8;
+    *values = name == GL_MAX_GENERAL_COMBINERS_NV ? 8 : name == GL_MAX_TEXTURE_UNITS ? 4 : name == GL_MAX_TEXTURE_SIZE ? 2048 : name == GL_SAMPLE_BUFFERS ? 0 : name == GL_DEPTH_BITS ? 24 : 8;
 }
 
 int surface_open(int width, int height)
