@@ -1,6 +1,6 @@
 //! Texture coordinates: where a unit samples on each level of each kind of texture, at a pixel and at its quad.
 
-use super::cube::{Face, Signed};
+use super::cube::{Face, Signed, major_axis};
 use super::lod::Quad;
 use super::planned::PlannedUnit;
 use super::report::Report;
@@ -74,12 +74,10 @@ pub fn wrapped(unit: &PlannedUnit, mut vertices: [[f32; 4]; 3]) -> [[f32; 4]; 3]
 }
 
 /// Returns the face that a direction meets.
-pub(crate) fn face_of([x, y, z]: [Binary; 3]) -> Face {
-    let not_below = |a: Binary, b: Binary| a.is_no_smaller(b);
-    let (x_first, y_first) = (not_below(x, y) && not_below(x, z), not_below(y, z));
-    // As `Face::from_direction` orders magnitudes.
-    let magnitudes = [if x_first { 2 } else { 0 }, i64::from(y_first), i64::from(!y_first)];
-    Face::from_direction([x, y, z].map(|n| n.mantissa), magnitudes, 0)
+pub(crate) fn face_of(direction: [Binary; 3]) -> Face {
+    let [x, y, z] = direction;
+    let axis = major_axis([x.is_no_smaller(y), x.is_no_smaller(z), y.is_no_smaller(z)]);
+    Face::from_axis(axis, |axis| direction[axis].mantissa < 0)
 }
 
 /// Returns sc, tc and |ma| of a direction on a face.

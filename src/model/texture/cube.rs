@@ -43,10 +43,13 @@ impl Face {
     /// The zero vector, and a vector that cannot be compared, meets +X. `zero` is the number 0.
     pub fn from_direction<T: PartialOrd + Copy>(direction: [T; 3], magnitudes: [T; 3], zero: T) -> Face {
         let [x, y, z] = magnitudes;
-        let [is_x, is_y] = major_axis([x >= y, x >= z, y >= z]);
+        Face::from_axis(major_axis([x >= y, x >= z, y >= z]), |axis| direction[axis] < zero)
+    }
+
+    /// Returns a face on the [major axis](major_axis), of whose component `is_negative` gives the sign.
+    pub(crate) fn from_axis([is_x, is_y]: [bool; 2], is_negative: impl FnOnce(usize) -> bool) -> Face {
         let axis = if is_x { 0 } else { 2 - usize::from(is_y) };
-        let negative = direction[axis] < zero;
-        match (axis, negative) {
+        match (axis, is_negative(axis)) {
             (0, false) => Face::PositiveX,
             (0, true) => Face::NegativeX,
             (1, false) => Face::PositiveY,
