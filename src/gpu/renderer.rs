@@ -5,8 +5,7 @@ use std::collections::HashMap;
 use ninebit::engine::{TextureWords, cleared};
 use ninebit::frame::Frames;
 use ninebit::plan::{Plan, PlannedDraw};
-use ninebit::shown;
-use ninebit::state::{Named as _, Scene, TextureImage};
+use ninebit::state::{Scene, TextureImage};
 use ninebit_lower::{Function, Options, Setup};
 use wgpu::BufferUsages;
 

@@ -8,7 +8,7 @@ use crate::plan::PlannedDraw;
 use crate::raster::binary::Binary;
 use crate::state::{DependentScale, ShaderOperation, ShaderStage, TEXTURE_UNITS};
 use crate::texture::shader;
-use crate::texture::stage::PlannedShaderStage;
+use crate::texture::stage::{PlannedShader, PlannedShaderStage};
 
 /// Where a number of a stage is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,7 +78,7 @@ impl Shader {
         let planned = draw.shader.as_ref()?;
         let mut shader = Shader { stages: Vec::new(), varying: Vec::new(), same: Vec::new(), vectors: Vec::new() };
         for index in 0..TEXTURE_UNITS {
-            let stage = shader.stage(draw, &planned.stages, index, samplers, scale)?;
+            let stage = shader.stage(draw, planned, index, samplers, scale)?;
             shader.stages.push(stage);
         }
         Some(shader)
@@ -87,12 +87,12 @@ impl Shader {
     fn stage(
         &mut self,
         draw: &PlannedDraw,
-        all: &[PlannedShaderStage; TEXTURE_UNITS],
+        shader: &PlannedShader,
         index: usize,
         samplers: &[Sampler],
         scale: DependentScale,
     ) -> Option<Stage> {
-        let planned = &all[index];
+        let planned = &shader.stages[index];
         let state = planned.state;
         let sampler = samplers.iter().position(|sampler| sampler.unit == index);
         let mut stage = Stage {
@@ -102,19 +102,14 @@ impl Shader {
             sampler,
             numbers: [Number::Unread; 4],
             vector: 0,
-            doubled: [false; 4],
+            doubled: shader.doubled(index, &draw.units),
             luminance: Vec::new(),
             dependent: [Vec::new(), Vec::new()],
         };
         if !stage.runs {
             return Some(stage);
         }
-        if let Some(sampler) = sampler {
-            let has_luminance = matches!(state.operation, ShaderOperation::BumpEnvironment { luminance: Some(_), .. });
-            let signed = samplers[sampler].signed;
-            stage.doubled = [0, 1, 2, 3].map(|n| signed[n] && !(has_luminance && n < 3));
-        }
-        let reflects = all.iter().any(|stage| {
+        let reflects = shader.stages.iter().any(|stage| {
             stage.runs() && stage.live != 0 && matches!(stage.state.operation, ShaderOperation::DotReflectSpecular)
         });
         if stage.dots {
@@ -122,7 +117,7 @@ impl Shader {
             for n in 0..components {
                 stage.numbers[n] = self.number(draw, index, &state, n, Purpose::Float);
             }
-            stage.vector = self.vector(all, samplers, &state);
+            stage.vector = self.vector(&state);
         }
         match state.operation {
             ShaderOperation::PassThrough => {
@@ -180,22 +175,13 @@ impl Shader {
     }
 
     /// Adds the remapped colour that a stage reads. Returns its index.
-    fn vector(
-        &mut self,
-        all: &[PlannedShaderStage; TEXTURE_UNITS],
-        samplers: &[Sampler],
-        state: &ShaderStage,
-    ) -> usize {
+    fn vector(&mut self, state: &ShaderStage) -> usize {
         let ShaderStage { previous, mapping, .. } = *state;
         let remap = Remap::new(mapping);
         if let Some(known) = self.vectors.iter().position(|vector| (vector.0, vector.2) == (previous, remap)) {
             return known;
         }
-        let luminance =
-            matches!(all[previous].state.operation, ShaderOperation::BumpEnvironment { luminance: Some(_), .. });
-        let signed = samplers.iter().find(|sampler| sampler.unit == previous).map_or([false; 4], |s| s.signed);
-        let doubled = [0, 1, 2, 3].map(|n| signed[n] && !(luminance && n < 3));
-        self.vectors.push((previous, doubled, remap));
+        self.vectors.push((previous, self.stages[previous].doubled, remap));
         self.vectors.len() - 1
     }
 }
