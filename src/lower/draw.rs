@@ -1,6 +1,6 @@
 //! Makes the function of a draw's whole pixel: from its place in a triangle and the memories of textures to the stored words.
 
-use ninebit::number::Integer;
+use ninebit::number::{Integer, Register as _};
 use ninebit::plan::Plan;
 use ninebit::state::{CompareFunction, Scene};
 
@@ -14,6 +14,9 @@ use crate::place::{Place, Projection, Unit};
 use crate::stage::Stages;
 use crate::truth::Truth;
 use crate::whole::Whole;
+
+/// What a unit that is not planned gives: nobody reads it, or the plan knows that all of it is 0.
+const UNPLANNED: [Number<'static>; 4] = [Number::ZERO; 4];
 
 impl Function {
     /// Makes the function of a whole pixel of a draw: `number` of a scene, and of its plan.
@@ -39,7 +42,8 @@ impl Function {
         let quad = [x, y].map(|at| at.masked(4094));
         let shader = planned.shader.as_ref().map(|shader| {
             let scale = options.policies.dependent_scale;
-            Stages { whole: &whole, shader, scale, quad }.run(&sample)
+            let first = [0, 1, 2, 3].map(|n| if is_idle(draw, n) { UNBOUND } else { UNPLANNED });
+            Stages { whole: &whole, shader, scale, quad, first }.run(&sample)
         });
         let mut dropped = shader.map_or(Truth::Known(false), |(_, dropped)| dropped);
         let registers = loaded([colors[0], colors[1], fog], |n| {
@@ -49,8 +53,7 @@ impl Function {
             if is_idle(draw, n) {
                 return UNBOUND;
             }
-            // A unit that is not planned is not read.
-            let Some(unit) = planned.units.iter().find(|unit| unit.index == n) else { return UNBOUND };
+            let Some(unit) = planned.units.iter().find(|unit| unit.index == n) else { return UNPLANNED };
             let projection = Projection::new(&whole, unit);
             let (register, drops) = Unit::new(&whole, unit, &sample, quad, &|_| Place::Own(projection)).register();
             dropped = dropped | drops;

@@ -76,6 +76,8 @@ pub(crate) struct Stages<'a, 's, 'w> {
     pub(crate) scale: DependentScale,
     /// The first pixel of the quad.
     pub(crate) quad: [Number<'a>; 2],
+    /// The registers before all stages: those of stages that do not run.
+    pub(crate) first: [[Number<'a>; 4]; TEXTURE_UNITS],
 }
 
 impl<'a> Stages<'a, '_, '_> {
@@ -87,8 +89,7 @@ impl<'a> Stages<'a, '_, '_> {
 
     /// Runs the stages before one.
     fn before(&self, end: usize, sample: &Sample<'a>) -> State<'a> {
-        let mut state =
-            State { registers: [UNBOUND; TEXTURE_UNITS], dots: [None; TEXTURE_UNITS], dropped: Truth::Known(false) };
+        let mut state = State { registers: self.first, dots: [None; TEXTURE_UNITS], dropped: Truth::Known(false) };
         for index in (0..end).filter(|index| self.shader.stages[*index].runs()) {
             self.stage(index, sample, &mut state);
         }
