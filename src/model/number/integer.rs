@@ -36,12 +36,9 @@ pub trait Integer: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output =
     fn or(self, choice: Self::Choice, other: Self) -> Self;
     /// Returns entry `self` of a table.
     fn entry(self, table: &'static [u8]) -> Self;
-
     /// Returns the floor of the root of a number of at most 60 bits that is not negative.
-    #[inline(always)]
-    fn root(self) -> Self {
-        newton_root(self)
-    }
+    fn root(self) -> Self;
+
     /// Returns the number, which is known to be within these bounds.
     #[inline(always)]
     fn within(self, _low: i64, _high: i64) -> Self {

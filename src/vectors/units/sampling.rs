@@ -212,9 +212,6 @@ impl Unit for VolumeLayer {
 /// The taps of a footprint.
 pub(super) struct AnisotropyTaps;
 
-/// Largest number of pairs of taps.
-const PAIRS: usize = anisotropy::MAX_PAIRS;
-
 impl Unit for AnisotropyTaps {
     known_as!(
         "anisotropy-taps", &["TEX-11", "TEX-17"],
@@ -224,7 +221,7 @@ impl Unit for AnisotropyTaps {
 
     fn results(&self) -> Vec<Column> {
         let mut columns = vec![Column::result("out.count", Kind::Unsigned(4))];
-        for pair in 0..PAIRS {
+        for pair in 0..anisotropy::MAX_PAIRS {
             columns.extend(["u", "v"].map(|axis| Column::result(&format!("out.{axis}{pair}"), Kind::Signed(25))));
             columns.push(Column::result(&format!("out.weight{pair}"), Kind::Unsigned(9)));
         }
