@@ -5,7 +5,7 @@ use ninebit::plan::Plan;
 use ninebit::state::{CompareFunction, Scene};
 
 use crate::binary::counted;
-use crate::code::{Code, Operand, Operation, Test};
+use crate::code::{Code, Operand, Test};
 use crate::helper::Helper;
 use crate::input::Input;
 use crate::number::{Number, Word};
@@ -69,7 +69,6 @@ impl Function {
             code.by("");
             (depth.word() | stencil.word() << 24).0.operand()
         });
-        let depth = depth.filter(|depth| code.operation(*depth) != Some(Operation::Input(Input::Depth)));
         let test = match stored {
             Truth::Known(false) => Some(Test(CompareFunction::NotEqual, [Operand::Constant(0); 2])),
             stored => stored.test(),

@@ -181,7 +181,7 @@ impl<'a> Whole<'a, '_> {
         (word, outside)
     }
 
-    /// ROP-1, STN-1, DEP-1, DEP-2: runs the tests in their order after `kept`. Returns whether the fragment is stored, and the new depth and stencil.
+    /// ROP-1, STN-1, DEP-1, DEP-2: runs the tests in their order after `kept`. Returns whether the fragment is stored, and the new depth and stencil if the draw can write them.
     pub(crate) fn tests(&self, kept: Truth<'a>, e: [Number<'a>; 3]) -> (Truth<'a>, Option<[Number<'a>; 2]>) {
         let draw = self.planned;
         if draw.depth_test.is_none() && draw.stencil_test.is_none() {
@@ -212,6 +212,7 @@ impl<'a> Whole<'a, '_> {
             let after_depth = written(test.pass).or(depth_passed, written(test.depth_fail));
             new_stencil = after_depth.or(stencil_passed, written(test.fail)).or(kept, held_stencil);
         }
-        (kept & stencil_passed & depth_passed, Some([new_depth, new_stencil]))
+        let is_held = new_depth.operand() == held_depth.operand() && new_stencil.operand() == held_stencil.operand();
+        (kept & stencil_passed & depth_passed, (!is_held).then_some([new_depth, new_stencil]))
     }
 }
