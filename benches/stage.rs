@@ -9,7 +9,7 @@ use multiversion::multiversion;
 use ninebit::combiner::general::dot_product;
 use ninebit::combiner::mapping::{expand_normal, unsigned_identity};
 use ninebit::combiner::output::finished;
-use ninebit::number::{Factor, Narrow, Paired, Register, Sum};
+use ninebit::number::{Factor, Narrow, Pair, Register, Sum};
 use ninebit::random::Random;
 use ninebit::state::{Bias, RegisterFloor, Scale};
 use std::hint::black_box;
@@ -97,8 +97,8 @@ fn stage(c: &mut Criterion) {
     group.throughput(Throughput::Elements(PIXELS as u64));
     let (t, p) = (pixels(&texture, i32::from), pixels(&primary, i32::from));
     group.bench_function("scalar", |b| b.iter(|| one_by_one(black_box(&t), black_box(&p), black_box(&mut scalar))));
-    let paired = |v: i16| Paired { fixed: i32::from(v), ideal: f64::from(v) };
-    let (t, p, mut out) = (pixels(&texture, paired), pixels(&primary, paired), [Paired::ZERO; PIXELS]);
+    let paired = |v: i16| Pair { fixed: i32::from(v), ideal: f64::from(v) };
+    let (t, p, mut out) = (pixels(&texture, paired), pixels(&primary, paired), [Pair::ZERO; PIXELS]);
     group.bench_function("scalar_with_ideal", |b| {
         b.iter(|| one_by_one(black_box(&t), black_box(&p), black_box(&mut out)))
     });

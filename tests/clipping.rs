@@ -8,7 +8,7 @@ use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::raster::project::ClipPlane;
 use ninebit::state::{Positions, Scene};
-use ninebit_scene::{self as scene, Loaded};
+use ninebit_scene::{self as scene, LoadedScene};
 use ninebit_test_support::random_scene;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
@@ -146,7 +146,7 @@ fn pieces_of_random_scenes_are_in_order() {
 #[test]
 fn the_corridor_is_cut_on_all_sides() {
     let path = at("vectors/scenes/clipping/corridor.ron");
-    let Loaded { scene, plan, .. } = scene::load(&path, &Limits::default()).unwrap();
+    let LoadedScene { scene, plan, .. } = scene::load(&path, &Limits::default()).unwrap();
     let planes = plan.draws().iter().fold(0, |set, draw| set | draw.assembly.clipping.planes);
     for plane in [ClipPlane::Near, ClipPlane::Far] {
         assert!(planes & plane.bit() != 0, "{plane:?}");

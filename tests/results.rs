@@ -12,7 +12,7 @@ use ninebit_vectors::cases::Level;
 use ninebit_vectors::column::Kind;
 use ninebit_vectors::pack::{self, Manifest, Options};
 use ninebit_vectors::read::Table;
-use ninebit_vectors::results::adopt::Adopted;
+use ninebit_vectors::results::adopt::AdoptionRecord;
 use ninebit_vectors::results::compare::{Comparison, compare};
 use ninebit_vectors::results::waiver::Waiver;
 use ninebit_vectors::results::{self, parse};
@@ -22,18 +22,18 @@ use ninebit_vectors::units;
 const UNITS: [&str; 3] = ["product", "scale-bias", "input-mapping"];
 
 /// A vector pack, and a folder for the results of a card.
-struct Asked {
+struct Export {
     folder: tempfile::TempDir,
     manifest: Manifest,
     tables: Vec<Table>,
 }
 
-impl Asked {
-    fn new() -> Asked {
-        Asked::of(&UNITS)
+impl Export {
+    fn new() -> Export {
+        Export::of(&UNITS)
     }
 
-    fn of(units: &[&str]) -> Asked {
+    fn of(units: &[&str]) -> Export {
         let folder = tempfile::tempdir().unwrap();
         let options = Options {
             profile: *units::by_name(units[0]).unwrap().profiles().last().unwrap(),
@@ -45,7 +45,7 @@ impl Asked {
         };
         pack::export(&folder.path().join("pack"), &options).unwrap();
         let (manifest, tables) = pack::open(&folder.path().join("pack")).unwrap();
-        let asked = Asked { folder, manifest, tables };
+        let asked = Export { folder, manifest, tables };
         asked.answer("NVIDIA Corporation", "GeForce 256/AGP", Policies::DEFAULT);
         asked
     }
@@ -136,7 +136,7 @@ fn changed(path: &Path, change: impl Fn(&str) -> String) {
 }
 
 /// Replaces the result of the first row of product whose result is 78.
-fn with_product(asked: &Asked, found: &str) {
+fn with_product(asked: &Export, found: &str) {
     changed(&asked.path("product"), |body| {
         let row = body.lines().find(|line| line.contains("\t78\t")).unwrap();
         body.replacen(row, &row.replace("\t78\t", &format!("\t{found}\t")), 1)
@@ -146,7 +146,7 @@ fn with_product(asked: &Asked, found: &str) {
 /// A card that rounds late and expands to the letter: the scorecard names both as the causes, and explains every row.
 #[test]
 fn the_scorecard_names_the_causes_of_rows() {
-    let asked = Asked::new();
+    let asked = Export::new();
     let (right, _) = asked.score(&[]);
     assert_eq!(right["runs"][0]["total"]["exact"], UNITS.len());
     let mut policies = Policies::default();
@@ -167,7 +167,7 @@ fn the_scorecard_names_the_causes_of_rows() {
     let page = fs::read_to_string(asked.folder.path().join("report/index.html")).unwrap();
     assert!(page.contains("a row as a pixel") && page.contains("ninebit rule CMB-9") && page.contains("late-rounding"));
     // Results of another pack are refused.
-    let other = Asked::of(&["product"]);
+    let other = Export::of(&["product"]);
     fs::copy(other.path("product"), asked.path("product")).unwrap();
     fs::copy(other.results().join("device.json"), asked.results().join("device.json")).unwrap();
     assert_eq!(asked.score(&[]).1, Some(3));
@@ -175,7 +175,7 @@ fn the_scorecard_names_the_causes_of_rows() {
 
 #[test]
 fn what_agrees_is_exact() {
-    let asked = Asked::new();
+    let asked = Export::new();
     let comparison = asked.compare(&[]);
     assert!(comparison.is_clean() && comparison.explanation.is_none());
     for unit in &comparison.units {
@@ -189,7 +189,7 @@ fn what_agrees_is_exact() {
 /// If a card follows another value of a policy, the comparison names it.
 #[test]
 fn the_policy_that_a_card_follows_is_named() {
-    let asked = Asked::new();
+    let asked = Export::new();
     for (policy, unit) in
         [("CMB-9=after", "scale-bias"), ("CMB-3=literal", "input-mapping"), ("CMB-4=127", "input-mapping")]
     {
@@ -211,7 +211,7 @@ fn the_policy_that_a_card_follows_is_named() {
 fn the_reading_that_a_card_follows_is_named() {
     for unit in units::all().into_iter().filter(|unit| !unit.readings().is_empty()) {
         let name = unit.name();
-        let asked = Asked::of(&[name]);
+        let asked = Export::of(&[name]);
         for (reading, value) in (0..).zip(unit.readings()) {
             asked.answer_in("NVIDIA Corporation", "GeForce3", Policies::DEFAULT, Some(reading));
             let comparison = asked.compare(&[]);
@@ -228,7 +228,7 @@ fn the_reading_that_a_card_follows_is_named() {
         let output = asked.run(&["adopt", "pack", "results", "-o", "adopted", "--device", "geforce3"]);
         assert_eq!(output.status.code(), Some(0), "{output:?}");
         let record = fs::read(asked.folder.path().join("adopted/geforce3/ADOPTED.json")).unwrap();
-        let record: Adopted = serde_json::from_slice(&record).unwrap();
+        let record: AdoptionRecord = serde_json::from_slice(&record).unwrap();
         assert_eq!((record.behaviour_rev, record.units[0].contradicted), (BEHAVIOUR, 0));
         // A row that no reading explains is a difference.
         changed(&asked.path(name), |body| {
@@ -243,7 +243,7 @@ fn the_reading_that_a_card_follows_is_named() {
 
 #[test]
 fn differences_are_told_with_intermediates_and_waived_by_name_only() {
-    let asked = Asked::new();
+    let asked = Export::new();
     with_product(&asked, "79");
     let waiver = |maximum, count| Waiver { unit: "product".to_owned(), maximum, count, reason: "known".to_owned() };
     let comparison = asked.compare(&[]);
@@ -281,7 +281,7 @@ fn differences_are_told_with_intermediates_and_waived_by_name_only() {
 /// Every kind of damage to a file of results has its code.
 #[test]
 fn spoiled_results_are_refused() {
-    let asked = Asked::new();
+    let asked = Export::new();
     let path = asked.path("product");
     let good = fs::read_to_string(&path).unwrap();
     let row = good.lines().nth(9).unwrap();
@@ -318,7 +318,7 @@ fn spoiled_results_are_refused() {
 /// If the chip cannot show the results of a unit, none of its rows was asked. Its table has neither observed columns nor rows.
 #[test]
 fn a_unit_that_a_card_cannot_show_was_not_asked() {
-    let asked = Asked::new();
+    let asked = Export::new();
     let of_columns = |columns: &str, row: &str| {
         changed(&asked.path("product"), |body| {
             let head: String = body.lines().take(6).map(|line| format!("{line}\n")).collect();
@@ -359,7 +359,7 @@ fn a_unit_that_a_card_cannot_show_was_not_asked() {
 /// Tests errors that only the folder as a whole shows.
 #[test]
 fn results_of_something_else_are_refused() {
-    let asked = Asked::new();
+    let asked = Export::new();
     let refused = |code: &str, exit: i32| {
         for command in ["compare", "adopt"] {
             let output = asked.run(&[command, "pack", "results"]);
@@ -442,7 +442,7 @@ fn batches_ask_rows_of_their_table() {
 /// Scenes lie beside the tables, with the picture of each reading, by which a card's answer is named.
 #[test]
 fn scenes_are_asked_and_named_by_their_reading() {
-    let asked = Asked::new();
+    let asked = Export::new();
     let scenes = ["vectors/scenes/deciding", "vectors/scenes/fog/corridor.ron", "vectors/harness/gl/scenes"];
     let scenes = scenes.map(|scenes| at(scenes).display().to_string());
     let mut arguments = vec!["export"];
@@ -535,7 +535,7 @@ fn owed(folder: &Path) -> Vec<String> {
     for entry in fs::read_dir(folder).into_iter().flatten() {
         let place = entry.unwrap().path();
         let text = fs::read_to_string(place.join("ADOPTED.json")).unwrap();
-        let adopted: Adopted = serde_json::from_str(&text).unwrap();
+        let adopted: AdoptionRecord = serde_json::from_str(&text).unwrap();
         if adopted.behaviour_rev > BEHAVIOUR {
             owed.push(format!("{} wants behaviour {}", adopted.device, adopted.behaviour_rev));
         }
@@ -552,12 +552,12 @@ fn owed(folder: &Path) -> Vec<String> {
 
 #[test]
 fn cards_are_adopted_and_the_model_owes_what_they_contradict() {
-    let asked = Asked::new();
+    let asked = Export::new();
     let adopted = asked.folder.path().join("adopted");
     let output = asked.run(&["adopt", "pack", "results", "-o", "adopted"]);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let text = fs::read_to_string(adopted.join("geforce-256-agp/ADOPTED.json")).unwrap();
-    let record: Adopted = serde_json::from_str(&text).unwrap();
+    let record: AdoptionRecord = serde_json::from_str(&text).unwrap();
     assert_eq!((record.grade.as_str(), record.behaviour_rev, record.units.len()), ("SILICON", BEHAVIOUR, 3));
     assert_eq!(owed(&adopted), [""; 0]);
 
@@ -579,7 +579,7 @@ fn cards_are_adopted_and_the_model_owes_what_they_contradict() {
 
 #[test]
 fn nothing_is_adopted_by_halves() {
-    let asked = Asked::new();
+    let asked = Export::new();
     let left = || fs::read_dir(asked.folder.path().join("adopted")).map_or(0, Iterator::count);
     let refused = |arguments: &[&str], exit: i32| {
         let output = asked.run(&[&["adopt", "pack", "results"], arguments].concat());
@@ -617,7 +617,7 @@ fn nothing_is_adopted_by_halves() {
 
 #[test]
 fn what_a_killed_run_left_and_what_a_card_calls_itself_harm_nobody() {
-    let asked = Asked::new();
+    let asked = Export::new();
     asked.answer("::error::injected\n::error::again", "\u{1b}[31mred\u{202e}##[error]old", Policies::DEFAULT);
     fs::write(asked.results().join(".ninebit-a1B2c3.part"), "half a file").unwrap();
     for command in ["compare", "adopt"] {

@@ -12,16 +12,16 @@ use ninebit::state::{
     AddressMode, Blend, BlendEquation, BlendFactor, Component, Cull, DepthBuffer, DepthFormat, Filter, FinalRegister,
     InputMapping, Positions, Profile, Register, SurfaceFormat, TextureFormat, TextureImage, Topology, VertexColor,
 };
-use ninebit_scene::{self as scene, Loaded, VertexSpans, fields};
+use ninebit_scene::{self as scene, LoadedScene, VertexSpans, fields};
 
 use crate::{error_codes, pages};
 
-fn parse(text: &str) -> Loaded {
+fn parse(text: &str) -> LoadedScene {
     scene::parse(text, Path::new("test.ron"), &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Returns a scene with one draw of a triangle, which has the given fields.
-fn draw(profile: &str, top: &str, fields: &str) -> Loaded {
+fn draw(profile: &str, top: &str, fields: &str) -> LoadedScene {
     parse(&format!(
         "(version: 1, profile: {profile}, {top} draws: [(vertices: Window([(position: (0, 0)), (position: (0, 9)), \
          (position: (9, 9))]), {fields})])"

@@ -19,14 +19,14 @@ use ninebit::vertex::fog::passed;
 use ninebit_files::texels;
 use ninebit_scene::assets::Bundle;
 use ninebit_scene::write::{self, SceneFiles, WriteOptions};
-use ninebit_scene::{self as scene, Loaded};
+use ninebit_scene::{self as scene, LoadedScene};
 use ninebit_vectors::captures::{self, Frame};
 use proptest::strategy::{Strategy, ValueTree};
 use rayon::prelude::*;
 use std::path::Path;
 
 /// Reads a scene that was written.
-fn read(files: &SceneFiles) -> Result<Loaded, String> {
+fn read(files: &SceneFiles) -> Result<LoadedScene, String> {
     let bundle = Bundle { files: files.files.iter().cloned().collect() };
     let loaded = scene::parse_with(&files.text, Path::new("written.ron"), &Limits::default(), &bundle);
     loaded.map_err(|error| error.to_string())

@@ -8,7 +8,7 @@ use ninebit::engine::{self, RenderOptions};
 use ninebit::limits::Limits;
 use ninebit::state::{Level, Texels, TextureFormat, TextureImage, TextureKind};
 use ninebit::texture::compressed::decode;
-use ninebit_scene::{self as scene, Loaded, SceneError};
+use ninebit_scene::{self as scene, LoadedScene, SceneError};
 use std::fs;
 use std::path::PathBuf;
 
@@ -29,7 +29,7 @@ impl Folder {
     }
 
     /// Loads a scene with `top` at its beginning and one draw with `units`.
-    fn load(&self, profile: &str, top: &str, units: &str) -> Result<Loaded, SceneError> {
+    fn load(&self, profile: &str, top: &str, units: &str) -> Result<LoadedScene, SceneError> {
         let text = format!(
             "(version: 1, profile: {profile}, {top} draws: [(vertices: Window([(position: (0, 0)), (position: (0, 9)), \
              (position: (9, 9))]), textures: [{units}])])"

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use ninebit::limits::Limits;
 use ninebit_lab::accuracy::{Accuracy, accuracy_text, accuracy_value, measure};
 use ninebit_scene::truth::{Pixel, evaluate};
-use ninebit_scene::{self as scene, Loaded};
+use ninebit_scene::{self as scene, LoadedScene};
 
-fn parse(text: &str) -> Loaded {
+fn parse(text: &str) -> LoadedScene {
     scene::parse(text, Path::new("test.ron"), &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -22,11 +22,11 @@ fn square(truth: &str, mesh: &str, draw: &str) -> String {
 
 const GRID: &str = "mesh: Grid(columns: 1, rows: 1)";
 
-fn pixels(loaded: &Loaded) -> Vec<Option<Pixel>> {
+fn pixels(loaded: &LoadedScene) -> Vec<Option<Pixel>> {
     evaluate(&loaded.plan, loaded.truth.as_ref().unwrap(), 0).pixels
 }
 
-fn accuracy(loaded: &Loaded) -> Accuracy {
+fn accuracy(loaded: &LoadedScene) -> Accuracy {
     measure(&loaded.scene, &loaded.plan, loaded.truth.as_ref().unwrap()).unwrap()
 }
 

@@ -5,11 +5,11 @@ use ninebit::engine::{RenderOptions, render, trace};
 use ninebit::limits::Limits;
 use ninebit::state::{Vertex, VertexColor, Vertices};
 use ninebit_report::explain::{explain, explanation_json, explanation_text};
-use ninebit_scene::{Loaded, parse};
+use ninebit_scene::{LoadedScene, parse};
 use std::path::Path;
 
 #[track_caller]
-fn loaded(text: &str) -> Loaded {
+fn loaded(text: &str) -> LoadedScene {
     parse(text, Path::new("tests/scene.ron"), &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 

@@ -4,7 +4,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use ninebit::state::Profile;
-use ninebit_program::Pasted;
+use ninebit_program::PastedProgram;
 use ninebit_program::texture_stages::{Context, lower, parse};
 
 fuzz_target!(|text: &str| {
@@ -15,7 +15,7 @@ fuzz_target!(|text: &str| {
                 assert!(finding.span.is_some_and(|span| text.get(span).is_some()));
             }
         }
-        Ok(Pasted { program, .. }) => {
+        Ok(PastedProgram { program, .. }) => {
             for profile in [Profile::Nv10, Profile::Nv2a] {
                 let context = Context { profile, bound: [true, true, false, false], signed: [false; 4], fog: true };
                 match lower(&program, &context) {

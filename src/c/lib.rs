@@ -21,7 +21,7 @@ use ninebit::threads;
 use ninebit_files::catch_panic::{Panic, catch_panic};
 use ninebit_program::registers::{RegisterWords, Word, decode};
 use ninebit_report::trace_json;
-use ninebit_scene::{ErrorKind, Loaded, SceneError};
+use ninebit_scene::{ErrorKind, LoadedScene, SceneError};
 
 /// Status of a call. The numbers are the exit statuses of the program.
 #[repr(i32)]
@@ -54,7 +54,7 @@ pub enum NinebitChip {
 /// A scene that has been read and checked. Threads may share it.
 #[derive(Debug)]
 pub struct NinebitScene {
-    loaded: Loaded,
+    loaded: LoadedScene,
 }
 
 /// Inputs of the combiners for a pixel: R, G, B, A of each register. Textures are -256 to 255, colours and fog 0 to 255.
@@ -304,7 +304,7 @@ unsafe fn begin(scene: *mut *mut NinebitScene) -> Result<(), Failure> {
 ///
 /// # Safety
 /// `scene` may be written.
-unsafe fn finish(scene: *mut *mut NinebitScene, loaded: Loaded) {
+unsafe fn finish(scene: *mut *mut NinebitScene, loaded: LoadedScene) {
     // SAFETY: promised.
     unsafe { put(scene, Box::into_raw(Box::new(NinebitScene { loaded }))) };
 }
@@ -358,7 +358,7 @@ pub unsafe extern "C" fn ninebit_target_size(
     })
 }
 
-fn target_of(loaded: &Loaded, target: usize) -> Result<&ninebit::state::Target, Failure> {
+fn target_of(loaded: &LoadedScene, target: usize) -> Result<&ninebit::state::Target, Failure> {
     let count = loaded.scene.targets.len();
     let none = || Failure::argument(format!("the scene has no target {target}: it has {count}, numbered from 0"));
     loaded.scene.targets.get(target).ok_or_else(none)

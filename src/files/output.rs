@@ -5,7 +5,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use crate::files;
-use crate::pending::{Checked, PendingFile};
+use crate::pending::{FaultPoint, PendingFile};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 use ninebit::shown;
@@ -96,7 +96,7 @@ pub fn write_stdout(bytes: &[u8]) -> Result<(), OutputError> {
 /// # Errors
 /// Those of [`write_stdout`].
 pub fn write_stdout_with(fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), OutputError> {
-    let mut stdout = BufWriter::new(Checked(io::stdout().lock()));
+    let mut stdout = BufWriter::new(FaultPoint(io::stdout().lock()));
     fill(&mut stdout).and_then(|()| stdout.flush()).map_err(|source| OutputError::Stdout { source })
 }
 

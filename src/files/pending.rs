@@ -226,9 +226,9 @@ pub struct PendingFile {
 #[derive(Debug)]
 enum Target {
     /// A temporary file, the path that it will get, and its entry, which has to be dropped after the file.
-    Temporary(BufWriter<Checked<tempfile::NamedTempFile>>, PathBuf, Pending),
+    Temporary(BufWriter<FaultPoint<tempfile::NamedTempFile>>, PathBuf, Pending),
     /// Something else than a regular file, which is written directly.
-    Device(Checked<std::fs::File>),
+    Device(FaultPoint<std::fs::File>),
 }
 
 impl PendingFile {
@@ -244,7 +244,7 @@ impl PendingFile {
         }
         if existing.as_ref().is_some_and(|metadata| !metadata.is_file()) {
             let device = std::fs::OpenOptions::new().write(true).open(path).map_err(refused)?;
-            return Ok(PendingFile { path: path.to_path_buf(), target: Target::Device(Checked(device)) });
+            return Ok(PendingFile { path: path.to_path_buf(), target: Target::Device(FaultPoint(device)) });
         }
         if existing.as_ref().is_some_and(|metadata| metadata.permissions().readonly()) {
             // A rename would replace the file nevertheless, but whoever protected it did not want that.
@@ -263,7 +263,7 @@ impl PendingFile {
         }
         let made = Pending::enter(|| builder.tempfile_in(folder), |file| file.path());
         let (temporary, pending) = made.map_err(|error| refused(without_path(error)))?;
-        let target = Target::Temporary(BufWriter::new(Checked(temporary)), place, pending);
+        let target = Target::Temporary(BufWriter::new(FaultPoint(temporary)), place, pending);
         Ok(PendingFile { path: path.to_path_buf(), target })
     }
 
@@ -282,7 +282,7 @@ impl PendingFile {
         match self.target {
             Target::Device(mut device) => device.flush().map_err(refused),
             Target::Temporary(buffered, place, _entry) => {
-                let Checked(temporary) = buffered.into_inner().map_err(|error| refused(error.into_error()))?;
+                let FaultPoint(temporary) = buffered.into_inner().map_err(|error| refused(error.into_error()))?;
                 let synced = faults::check(Operation::Write).and_then(|()| temporary.as_file().sync_all());
                 synced.map_err(refused)?;
                 let _pending = pending();
@@ -311,9 +311,9 @@ impl Write for PendingFile {
 
 /// A writer that a test can make fail. It fails as a full disk does: a part has been written.
 #[derive(Debug)]
-pub(crate) struct Checked<W>(pub(crate) W);
+pub(crate) struct FaultPoint<W>(pub(crate) W);
 
-impl<W: Write> Write for Checked<W> {
+impl<W: Write> Write for FaultPoint<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         if let Err(error) = faults::check(Operation::Write) {
             self.0.write_all(&bytes[..bytes.len() / 2])?;

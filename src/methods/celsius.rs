@@ -56,7 +56,7 @@ const CONSTANT: [(u32, u32); 12] = [
 
 /// What is known of a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Known {
+pub(crate) enum StateWord {
     /// Kelvin's word.
     Word(u32),
     /// It was never set; its own number.
@@ -71,23 +71,22 @@ pub(crate) fn constant(kelvin: u32) -> Option<u32> {
 }
 
 /// Reads state by Kelvin's number. `own` has the class's own words.
-pub(crate) fn known(kelvin: u32, own: impl Fn(u32) -> Option<u32>) -> Known {
-    let read = |number: u32| own(number).map_or(Known::Unset(number), Known::Word);
-    let then = |known: Known, change: &dyn Fn(u32) -> u32| match known {
-        Known::Word(word) => Known::Word(change(word)),
+pub(crate) fn known(kelvin: u32, own: impl Fn(u32) -> Option<u32>) -> StateWord {
+    let read = |number: u32| own(number).map_or(StateWord::Unset(number), StateWord::Word);
+    let then = |known: StateWord, change: &dyn Fn(u32) -> u32| match known {
+        StateWord::Word(word) => StateWord::Word(change(word)),
         other => other,
     };
     match (Family::Celsius.own(kelvin), unit_of(kelvin)) {
-        (None, Some((class::SET_TEXTURE_ADDRESS, unit))) => {
-            own_of_unit(class::SET_TEXTURE_FORMAT, unit).map_or(Known::Word(0), |number| then(read(number), &address))
-        }
+        (None, Some((class::SET_TEXTURE_ADDRESS, unit))) => own_of_unit(class::SET_TEXTURE_FORMAT, unit)
+            .map_or(StateWord::Word(0), |number| then(read(number), &address)),
         (None, _) if kelvin == class::SET_SHADER_STAGE_PROGRAM => stages(&own),
         // NV15 and later have it; for NV10 nothing sets it.
-        (Some(number), _) if kelvin == class::SET_LOGIC_OP_ENABLE => Known::Word(own(number).unwrap_or(0)),
-        (None, _) if attribute_of(kelvin).is_some() => Known::Word(NO_ARRAY),
+        (Some(number), _) if kelvin == class::SET_LOGIC_OP_ENABLE => StateWord::Word(own(number).unwrap_or(0)),
+        (None, _) if attribute_of(kelvin).is_some() => StateWord::Word(NO_ARRAY),
         // Generators and matrices of the sets that only Kelvin has.
-        (None, _) if (0x3c0..0x400).contains(&kelvin) || (0x420..0x430).contains(&kelvin) => Known::Word(0),
-        (None, _) => constant(kelvin).map_or(Known::Absent, Known::Word),
+        (None, _) if (0x3c0..0x400).contains(&kelvin) || (0x420..0x430).contains(&kelvin) => StateWord::Word(0),
+        (None, _) => constant(kelvin).map_or(StateWord::Absent, StateWord::Word),
         (Some(number), Some((class::SET_TEXTURE_FORMAT, _))) => then(read(number), &format),
         (Some(number), Some((class::SET_TEXTURE_FILTER, _))) => then(read(number), &filter),
         (Some(number), _) => match kelvin {
@@ -189,18 +188,18 @@ fn array(word: u32, attribute: u32) -> u32 {
 }
 
 /// Returns the stages of the texture shader: each enabled unit samples.
-fn stages(own: &impl Fn(u32) -> Option<u32>) -> Known {
+fn stages(own: &impl Fn(u32) -> Option<u32>) -> StateWord {
     let mut word = 0;
     for unit in 0..2 {
         let number = |method| own_of_unit(method, unit).unwrap_or(0);
         let (enable, format) = (number(class::SET_TEXTURE_CONTROL0), number(class::SET_TEXTURE_FORMAT));
-        let Some(control) = own(enable) else { return Known::Unset(enable) };
+        let Some(control) = own(enable) else { return StateWord::Unset(enable) };
         if control >> 30 & 1 != 0 {
             let cube = own(format).is_some_and(|format| format >> 2 & 1 != 0);
             word |= if cube { STAGE_CUBE } else { STAGE_TWO } << (5 * unit);
         }
     }
-    Known::Word(word)
+    StateWord::Word(word)
 }
 
 /// Returns the method of unit 0 and the unit, for a method of texture units.
@@ -224,7 +223,7 @@ fn attribute_of(kelvin: u32) -> Option<u32> {
 mod tests {
     use super::*;
 
-    fn word(kelvin: u32, own: &[(u32, u32)]) -> Known {
+    fn word(kelvin: u32, own: &[(u32, u32)]) -> StateWord {
         known(kelvin, |number| own.iter().find(|(other, _)| *other == number).map(|(_, word)| *word))
     }
 
@@ -235,12 +234,12 @@ mod tests {
         let own = texture_format(format, address).unwrap_or(0);
         assert_eq!(own, 1 | 0x50 | 6 << 7 | 3 << 12 | 6 << 16 | 4 << 20 | 2 << 24 | 3 << 28);
         assert!(begins_at_corners(own) && !begins_at_corners(own ^ 0x18));
-        assert_eq!(word(class::SET_TEXTURE_FORMAT + 64, &[(0x224, own)]), Known::Word(format));
-        assert_eq!(word(class::SET_TEXTURE_ADDRESS + 64, &[(0x224, own)]), Known::Word(address));
+        assert_eq!(word(class::SET_TEXTURE_FORMAT + 64, &[(0x224, own)]), StateWord::Word(format));
+        assert_eq!(word(class::SET_TEXTURE_ADDRESS + 64, &[(0x224, own)]), StateWord::Word(address));
         let kelvin = 0x0102_1fff;
         let (number, filter) = super::own(class::SET_TEXTURE_FILTER, kelvin).unwrap_or_default();
         assert_eq!((number, filter), (0x248, 0x1200_1fff));
-        assert_eq!(word(class::SET_TEXTURE_FILTER, &[(0x248, filter)]), Known::Word(kelvin));
+        assert_eq!(word(class::SET_TEXTURE_FILTER, &[(0x248, filter)]), StateWord::Word(kelvin));
         // 8 bits of intensity in rows.
         assert_eq!(texture_format(0x1b << 8, 0).map(|word| word >> 7 & 0x1f), Some(0x13));
         assert_eq!(texture_format(0x3a << 8, 0), None);
@@ -248,26 +247,26 @@ mod tests {
 
     #[test]
     fn what_the_class_lacks_is_told_from_what_was_not_set() {
-        assert_eq!(word(class::SET_STIPPLE_ENABLE, &[]), Known::Word(0));
-        assert_eq!(word(class::SET_EYE_VECTOR, &[]), Known::Absent);
-        assert_eq!(word(class::SET_BLEND_ENABLE, &[]), Known::Unset(0x304));
-        assert_eq!(word(class::SET_SHADER_STAGE_PROGRAM, &[]), Known::Unset(0x228));
-        assert_eq!(word(class::SET_SHADER_STAGE_PROGRAM, &[(0x228, 1 << 30), (0x22c, 0)]), Known::Word(STAGE_TWO));
-        assert_eq!(word(class::SET_VERTEX_DATA_ARRAY_FORMAT + 24, &[]), Known::Word(NO_ARRAY));
+        assert_eq!(word(class::SET_STIPPLE_ENABLE, &[]), StateWord::Word(0));
+        assert_eq!(word(class::SET_EYE_VECTOR, &[]), StateWord::Absent);
+        assert_eq!(word(class::SET_BLEND_ENABLE, &[]), StateWord::Unset(0x304));
+        assert_eq!(word(class::SET_SHADER_STAGE_PROGRAM, &[]), StateWord::Unset(0x228));
+        assert_eq!(word(class::SET_SHADER_STAGE_PROGRAM, &[(0x228, 1 << 30), (0x22c, 0)]), StateWord::Word(STAGE_TWO));
+        assert_eq!(word(class::SET_VERTEX_DATA_ARRAY_FORMAT + 24, &[]), StateWord::Word(NO_ARRAY));
     }
 
     #[test]
     fn words_with_other_fields_are_translated() {
         // Positions of three numbers, colours of four bytes.
-        assert_eq!(word(class::SET_VERTEX_DATA_ARRAY_FORMAT, &[(0xd04, 0x1832)]), Known::Word(0x1832));
-        assert_eq!(word(class::SET_VERTEX_DATA_ARRAY_FORMAT + 12, &[(0xd0c, 0x1844)]), Known::Word(0x1844));
-        assert_eq!(word(class::SET_FOG_GEN_MODE, &[(0x2a0, 0)]), Known::Word(6));
-        assert_eq!(word(class::SET_COLOR_MATERIAL, &[(0x298, 0xc), (0x294, 1)]), Known::Word(0x90));
-        assert_eq!(word(class::SET_LIGHT_CONTROL, &[(0x294, 0x1_0003)]), Known::Word(0x1_0001));
+        assert_eq!(word(class::SET_VERTEX_DATA_ARRAY_FORMAT, &[(0xd04, 0x1832)]), StateWord::Word(0x1832));
+        assert_eq!(word(class::SET_VERTEX_DATA_ARRAY_FORMAT + 12, &[(0xd0c, 0x1844)]), StateWord::Word(0x1844));
+        assert_eq!(word(class::SET_FOG_GEN_MODE, &[(0x2a0, 0)]), StateWord::Word(6));
+        assert_eq!(word(class::SET_COLOR_MATERIAL, &[(0x298, 0xc), (0x294, 1)]), StateWord::Word(0x90));
+        assert_eq!(word(class::SET_LIGHT_CONTROL, &[(0x294, 0x1_0003)]), StateWord::Word(0x1_0001));
         // From pixel 0 to pixel 639.
         let kelvin = 639 << 16;
         assert_eq!(own(class::SET_WINDOW_CLIP_HORIZONTAL, kelvin), Some((0x2c0, (639 ^ 0x800) << 16 | 0x800)));
         let (number, clip) = own(class::SET_WINDOW_CLIP_HORIZONTAL, kelvin).unwrap_or_default();
-        assert_eq!(word(class::SET_WINDOW_CLIP_HORIZONTAL, &[(number, clip)]), Known::Word(kelvin));
+        assert_eq!(word(class::SET_WINDOW_CLIP_HORIZONTAL, &[(number, clip)]), StateWord::Word(kelvin));
     }
 }

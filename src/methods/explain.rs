@@ -5,7 +5,7 @@ use ninebit::state::{BlendEquation, BlendFactor, CompareFunction, Named, Surface
 use ninebit_program::registers::layout::{config, stages};
 use ninebit_program::registers::{Description, RegisterWords, Word as RegisterWord, describe, raster};
 
-use crate::celsius::Known;
+use crate::celsius::StateWord;
 use crate::class::{self, Family, METHOD_BYTES, Treatment, of_unit};
 use crate::draw::raster::{FOG_MODES, POLYGON_MODES};
 use crate::draw::texture::FORMATS;
@@ -35,7 +35,7 @@ pub fn settings(state: &State) -> Vec<Setting> {
         }
         let kelvin = family.kelvin(&place);
         let meaning = kelvin.and_then(|kelvin| match state.known(kelvin) {
-            Known::Word(word) => meaning(kelvin, word),
+            StateWord::Word(word) => meaning(kelvin, word),
             _ => None,
         });
         Some(Setting { label: family.label(number), word, meaning: meaning.unwrap_or_default() })

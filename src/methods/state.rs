@@ -5,7 +5,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::mem;
 
-use crate::celsius::{self, Known};
+use crate::celsius::{self, StateWord};
 use crate::class::{self, Family, METHOD_BYTES, Treatment};
 use crate::log::{Event, Write};
 use crate::vertex::formats::normalized;
@@ -140,9 +140,9 @@ impl State {
     }
 
     /// Returns what is known of a state, by Kelvin's number.
-    pub(crate) fn known(&self, kelvin: u32) -> Known {
+    pub(crate) fn known(&self, kelvin: u32) -> StateWord {
         match self.family() {
-            Family::Kelvin => self.get(kelvin).map_or(Known::Unset(kelvin), Known::Word),
+            Family::Kelvin => self.get(kelvin).map_or(StateWord::Unset(kelvin), StateWord::Word),
             Family::Celsius => celsius::known(kelvin, |number| self.get(number)),
         }
     }
@@ -299,7 +299,7 @@ impl State {
         {
             if batch.immediate.len() < LONGEST_DRAW / 4 {
                 batch.immediate.push(self.attributes);
-                batch.edge_flags.push(flag != Known::Word(0));
+                batch.edge_flags.push(flag != StateWord::Word(0));
             } else {
                 batch.cut = true;
             }

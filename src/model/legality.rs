@@ -66,7 +66,7 @@ named! {
 
 /// The result of checking a program.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Checked {
+pub struct LegalityReport {
     /// Errors and warnings, in no particular order.
     pub findings: Vec<Diagnostic>,
     /// The first place that reads the result of each texture unit. `None` if nothing reads it, or if the place is not
@@ -91,12 +91,12 @@ pub fn stage_count(count: usize, profile: Profile, place: impl Fn(usize) -> Opti
 }
 
 /// Checks a program. If it has too many stages, nothing else is checked.
-pub fn check(combiners: &Combiners, profile: Profile, places: &Places, notation: &dyn Notation) -> Checked {
+pub fn check(combiners: &Combiners, profile: Profile, places: &Places, notation: &dyn Notation) -> LegalityReport {
     let mut check = Check {
         profile,
         places,
         notation,
-        checked: Checked::default(),
+        checked: LegalityReport::default(),
         // SPARE0.a starts as the alpha of texture 0.
         spares: [false, true, false, false],
         textures: [[false; 2]; 4],
@@ -134,7 +134,7 @@ struct Check<'p> {
     profile: Profile,
     places: &'p Places,
     notation: &'p dyn Notation,
-    checked: Checked,
+    checked: LegalityReport,
     /// Whether SPARE0.rgb, SPARE0.a, SPARE1.rgb and SPARE1.a are defined.
     spares: [bool; 4],
     /// Whether a stage has written RGB and alpha of TEXTURE0 to TEXTURE3.

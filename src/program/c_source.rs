@@ -24,7 +24,7 @@ pub enum Style {
 
 /// A text after the expansion, and where its bytes come from.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Expanded {
+pub struct Expansion {
     /// The text for the language's reader.
     pub text: String,
     /// The place in the given text of each byte, and of the end. Bytes of a name's value have the place of the name.
@@ -36,7 +36,7 @@ pub struct Expanded {
 ///
 /// # Errors
 /// A directive is not supported, a quote is not closed, or the result is too large.
-pub fn expand(text: &str, style: Style, most: usize) -> Result<Option<Expanded>, Diagnostic> {
+pub fn expand(text: &str, style: Style, most: usize) -> Result<Option<Expansion>, Diagnostic> {
     let joined = match style {
         Style::Assembler | Style::Combiners if quoted(text) => Some(walk(text, style, true, most)?),
         _ => None,
@@ -51,7 +51,7 @@ pub fn expand(text: &str, style: Style, most: usize) -> Result<Option<Expanded>,
         finding
     })?;
     let places = expanded.places.iter().map(|at| place(*at)).collect();
-    Ok(Some(Expanded { text: expanded.text, places }))
+    Ok(Some(Expansion { text: expanded.text, places }))
 }
 
 /// Returns whether a text has quotes: one opens outside comments and directives.
@@ -92,11 +92,11 @@ struct Walk<'t> {
     /// Whether only the texts between quotes go into the result.
     joining: bool,
     most: usize,
-    result: Expanded,
+    result: Expansion,
 }
 
-fn walk(text: &str, style: Style, joining: bool, most: usize) -> Result<Expanded, Diagnostic> {
-    let result = Expanded { text: String::with_capacity(text.len()), places: Vec::with_capacity(text.len() + 1) };
+fn walk(text: &str, style: Style, joining: bool, most: usize) -> Result<Expansion, Diagnostic> {
+    let result = Expansion { text: String::with_capacity(text.len()), places: Vec::with_capacity(text.len() + 1) };
     let mut walk = Walk { defined: HashMap::new(), joining, most, result };
     let (mut at, mut first) = (0, true);
     while let Some(c) = text[at..].chars().next() {

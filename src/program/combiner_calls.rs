@@ -1,7 +1,7 @@
 //! Reads register combiners as pasted OpenGL calls of NV_register_combiners and NV_register_combiners2.
 
 use super::calls::opengl::{self, bare, capability, choose, color, flag, is_vector, numbered, table, whole};
-use super::calls::{Pasted, Reader, Statement, Value, Vocabulary, wrong_kind};
+use super::calls::{PastedProgram, Reader, Statement, Value, Vocabulary, wrong_kind};
 use super::finding::finding;
 use super::{Part, Place, Places};
 use crate::Span;
@@ -33,7 +33,7 @@ pub struct Program {
 ///
 /// # Errors
 /// Findings about whatever is not a statement, or sets something that the API does not have.
-pub fn parse(text: &str) -> Result<Pasted<Program>, Vec<Diagnostic>> {
+pub fn parse(text: &str) -> Result<PastedProgram<Program>, Vec<Diagnostic>> {
     let most = Profile::Nv2a.general_stages();
     let mut parser = Parser {
         reader: Reader::new(text, &COMBINERS),
@@ -287,7 +287,7 @@ impl<'t> Parser<'t> {
         Some(())
     }
 
-    fn finish(mut self) -> Result<Pasted<Program>, Vec<Diagnostic>> {
+    fn finish(mut self) -> Result<PastedProgram<Program>, Vec<Diagnostic>> {
         if let Some(span) = self.touched[self.count..].iter().flatten().min_by_key(|span| span.start).cloned() {
             let message = format!("GL_NUM_GENERAL_COMBINERS_NV is {}: stages beyond are not run", self.count);
             let help = "write `glCombinerParameteriNV(GL_NUM_GENERAL_COMBINERS_NV, ...)`; it is 1 where the text does not say it";

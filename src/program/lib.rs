@@ -27,7 +27,7 @@ pub mod texture_environment;
 pub mod texture_stages;
 pub mod vertex_shader;
 
-pub use calls::{Aside, Pasted};
+pub use calls::{Aside, PastedProgram};
 pub use finding::{Spanned, finding, warning};
 pub mod spelling;
 pub use ninebit::place::{Part, Place, Places, Span};

@@ -18,7 +18,7 @@ use ninebit_scene::assets::{Assets, Bundle, Folder};
 use ninebit_scene::change::Change;
 use ninebit_scene::data::{Data, scene_text as text_of_scene, value_text as text_of_value};
 use ninebit_scene::path::PathError;
-use ninebit_scene::{Loaded, load_changed, parse_changed};
+use ninebit_scene::{LoadedScene, load_changed, parse_changed};
 use numpy::PyArray1;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -47,7 +47,7 @@ impl Assets for Files {
 /// A scene that has been read and checked.
 #[pyclass(frozen)]
 pub(crate) struct Scene {
-    loaded: Loaded,
+    loaded: LoadedScene,
 }
 
 /// Arguments that choose what is drawn, and how.

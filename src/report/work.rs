@@ -8,7 +8,7 @@ const NANOSECONDS: f64 = 8.0;
 
 /// The shaded pixels of all draws.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shaded {
+pub struct ShadingWork {
     /// Their number, or an upper bound of it.
     pub pixels: u64,
     /// Whether they were counted.
@@ -17,15 +17,15 @@ pub struct Shaded {
     pub seconds: f64,
 }
 
-impl Shaded {
+impl ShadingWork {
     /// Adds the pixels of draws.
-    pub fn from_draws(draws: impl IntoIterator<Item = engine::Shaded>) -> Shaded {
+    pub fn from_draws(draws: impl IntoIterator<Item = engine::Shaded>) -> ShadingWork {
         let (mut pixels, mut exact) = (0_u64, true);
         for draw in draws {
             pixels = pixels.saturating_add(draw.pixels);
             exact &= draw.exact;
         }
-        Shaded { pixels, exact, seconds: pixels as f64 * NANOSECONDS / 1e9 }
+        ShadingWork { pixels, exact, seconds: pixels as f64 * NANOSECONDS / 1e9 }
     }
 
     /// Returns number and time for people: `307200, less than a second`.
@@ -46,12 +46,12 @@ mod tests {
 
     #[test]
     fn work_is_said_in_words() {
-        let text = |pixels, exact| Shaded::from_draws([engine::Shaded { pixels, exact }]).text();
+        let text = |pixels, exact| ShadingWork::from_draws([engine::Shaded { pixels, exact }]).text();
         assert_eq!(text(307_200, true), "307200, less than a second on one core");
         assert_eq!(text(150_000_000, true), "150000000, some 1 second on one core");
         assert_eq!(text(100_000_000_000, false), "at most 100000000000, some 13 minutes on one core");
         assert_eq!(text(6_800_000_000_000, false), "at most 6800000000000, some 15 hours on one core");
         let both = [(1, true), (2, false)].map(|(pixels, exact)| engine::Shaded { pixels, exact });
-        assert_eq!((Shaded::from_draws(both).pixels, Shaded::from_draws(both).exact), (3, false));
+        assert_eq!((ShadingWork::from_draws(both).pixels, ShadingWork::from_draws(both).exact), (3, false));
     }
 }

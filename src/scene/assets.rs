@@ -1,7 +1,7 @@
 //! Sources of the files that a scene names: its folder, or a bundle in memory.
 //!
 //! The loader resolves a name and gets the file's bytes, within a limit. A [`Folder`] reads the file system. A [`Bundle`] needs no file system. A
-//! [`Gathered`] reads a folder and keeps what it read, which makes a bundle.
+//! [`RecordingFolder`] reads a folder and keeps what it read, which makes a bundle.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -63,19 +63,19 @@ impl Assets for Bundle {
 
 /// A [`Folder`] that keeps every file it reads.
 #[derive(Debug, Default)]
-pub struct Gathered {
+pub struct RecordingFolder {
     names: RefCell<BTreeMap<PathBuf, Vec<String>>>,
     bundle: RefCell<Bundle>,
 }
 
-impl Gathered {
+impl RecordingFolder {
     /// Returns the files that have been read so far.
     pub fn bundle(self) -> Bundle {
         self.bundle.into_inner()
     }
 }
 
-impl Assets for Gathered {
+impl Assets for RecordingFolder {
     fn resolve(&self, folder: &Path, name: &str) -> Result<PathBuf, PathError> {
         let file = Folder.resolve(folder, name)?;
         self.names.borrow_mut().entry(file.clone()).or_default().push(name.to_owned());
@@ -106,7 +106,7 @@ mod tests {
         let path = Path::new("../../vectors/scenes/dot3/lit-stone.ron");
         let limits = Limits::default();
         let text = std::fs::read_to_string(path).expect("a scene");
-        let gathered = Gathered::default();
+        let gathered = RecordingFolder::default();
         parse_with(&text, path, &limits, &gathered).expect("sound");
         let bundle = gathered.bundle();
         assert_eq!(bundle.files.keys().collect::<Vec<_>>(), ["rocks-normal.png"]);

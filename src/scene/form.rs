@@ -1,6 +1,6 @@
 //! Describes what the values of a type look like in a scene's text.
 
-use super::raw::{Entries, Few, Raw, Reserved, Tuple};
+use super::raw::{Entries, Few, Raw, ReservedValue, Tuple};
 use super::reader::Name;
 use ninebit::state::Named;
 
@@ -71,7 +71,7 @@ described! {
     f32 => Form::Value(Kind::Number);
     bool => Form::Value(Kind::Choice(&["false", "true"]));
     Few<f32> => Form::Value(Kind::Numbers);
-    Vec<u32>, Reserved => Form::Value(Kind::Other);
+    Vec<u32>, ReservedValue => Form::Value(Kind::Other);
 }
 impl<T: Named> Described for Name<T> {
     fn form() -> Form {

@@ -54,7 +54,7 @@ pub use write::register_words;
 
 /// A scene that was read and checked.
 #[derive(Clone, Debug)]
-pub struct Loaded {
+pub struct LoadedScene {
     /// State of the scene.
     pub scene: Scene,
     /// Plan of the scene, made with [`PlanOptions::default`](ninebit::plan::PlanOptions).
@@ -71,7 +71,7 @@ pub struct Loaded {
     pub family: Option<Source>,
 }
 
-impl Loaded {
+impl LoadedScene {
     /// Checks that drawing the scene takes no more than `most` shaded pixels; [`Limits::shaded_pixels`] is what programs allow by themselves.
     ///
     /// # Errors
@@ -94,7 +94,7 @@ impl Loaded {
 ///
 /// # Errors
 /// The file is missing, too large or not UTF-8; it is no valid scene; a file that it names cannot be used.
-pub fn load(path: &Path, limits: &Limits) -> Result<Loaded, SceneError> {
+pub fn load(path: &Path, limits: &Limits) -> Result<LoadedScene, SceneError> {
     load_with(path, limits, &Folder)
 }
 
@@ -102,7 +102,7 @@ pub fn load(path: &Path, limits: &Limits) -> Result<Loaded, SceneError> {
 ///
 /// # Errors
 /// Those of [`load`].
-pub fn load_with(path: &Path, limits: &Limits, assets: &dyn Assets) -> Result<Loaded, SceneError> {
+pub fn load_with(path: &Path, limits: &Limits, assets: &dyn Assets) -> Result<LoadedScene, SceneError> {
     load_changed(path, limits, assets, &[])
 }
 
@@ -115,7 +115,7 @@ pub fn load_changed(
     limits: &Limits,
     assets: &dyn Assets,
     changes: &[change::Change],
-) -> Result<Loaded, SceneError> {
+) -> Result<LoadedScene, SceneError> {
     let name = shown::lossless(path);
     let fail = |finding: Diagnostic, text: String| SceneError {
         diagnostics: vec![finding],
@@ -191,7 +191,7 @@ pub fn load_program_with(
 ///
 /// # Errors
 /// All findings about the scene.
-pub fn parse(text: &str, origin: &Path, limits: &Limits) -> Result<Loaded, SceneError> {
+pub fn parse(text: &str, origin: &Path, limits: &Limits) -> Result<LoadedScene, SceneError> {
     parse_with(text, origin, limits, &Folder)
 }
 
@@ -199,7 +199,7 @@ pub fn parse(text: &str, origin: &Path, limits: &Limits) -> Result<Loaded, Scene
 ///
 /// # Errors
 /// Those of [`parse`].
-pub fn parse_with(text: &str, origin: &Path, limits: &Limits, assets: &dyn Assets) -> Result<Loaded, SceneError> {
+pub fn parse_with(text: &str, origin: &Path, limits: &Limits, assets: &dyn Assets) -> Result<LoadedScene, SceneError> {
     parse_changed(text, origin, limits, assets, &[])
 }
 
@@ -213,7 +213,7 @@ pub fn parse_changed(
     limits: &Limits,
     assets: &dyn Assets,
     changes: &[change::Change],
-) -> Result<Loaded, SceneError> {
+) -> Result<LoadedScene, SceneError> {
     let mut source =
         Source { name: shown::lossless(origin), text: text.strip_prefix('\u{feff}').unwrap_or(text).to_owned() };
     let folder = origin.parent().unwrap_or(Path::new(""));
@@ -253,7 +253,7 @@ pub fn parse_changed(
                 spans.iter_mut().for_each(|draw| family.keep_inside(draw, text));
             }
             let family = family.map(family::Family::into_source);
-            Ok(Loaded { scene, plan, warnings: diagnostics, source, draw_spans: spans, truth, family })
+            Ok(LoadedScene { scene, plan, warnings: diagnostics, source, draw_spans: spans, truth, family })
         }
         None => Err(SceneError { diagnostics, suppressed, source }),
     }

@@ -60,4 +60,4 @@ pub(super) struct Few<N> {
 pub(super) type Numbers = Few<f32>;
 
 /// A value that the format reserves and this version refuses without reading it.
-pub(super) struct Reserved;
+pub(super) struct ReservedValue;

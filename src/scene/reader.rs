@@ -11,7 +11,7 @@ use super::assets::Assets;
 use super::diagnostic::{DOCUMENTS, Diagnostic, needs_nv2a};
 use super::names::{Names, Targets, Textures};
 use super::notation::{Fault, FaultKind, Notation};
-use super::raw::{Entries, Few, Numbers, Raw, Reserved, Tuple};
+use super::raw::{Entries, Few, Numbers, Raw, ReservedValue, Tuple};
 use super::source::{Expected, Mismatch};
 use super::wording::{closest, describe, shorten, twice, words};
 use ninebit::legality::texture::TextureChecks;
@@ -411,7 +411,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Refuses a reserved field.
-    pub(super) fn reserve(&mut self, field: &Option<Raw<'a, Reserved>>, what: &str) {
+    pub(super) fn reserve(&mut self, field: &Option<Raw<'a, ReservedValue>>, what: &str) {
         if let Some(raw) = field {
             self.not_built(self.span(raw), what);
         }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use ninebit::shortcut::{Shortcuts, Wanted};
+use ninebit::shortcut::{PixelSelection, Shortcuts};
 use ninebit_scene::image::Rgba;
 
 use crate::explain::{differing, same};
@@ -98,9 +98,10 @@ impl CauseMap {
         number: usize,
         (truth, other): (&[[u8; 4]], &[[u8; 4]]),
         left: &mut Vec<usize>,
-        draw: impl Fn(&Wanted) -> Option<Vec<[u8; 4]>>,
+        draw: impl Fn(&PixelSelection) -> Option<Vec<[u8; 4]>>,
     ) {
-        let drawn = |places: &[usize]| draw(&Wanted::new(self.size, places.iter().copied())).unwrap_or_default();
+        let drawn =
+            |places: &[usize]| draw(&PixelSelection::new(self.size, places.iter().copied())).unwrap_or_default();
         if left.len() > 8 * PROBE {
             let probe: Vec<usize> = scattered(left.iter().copied(), (left.len() / PROBE) as u64);
             if !probe.iter().zip(drawn(&probe)).any(|(at, drawn)| same(drawn, other[*at])) {

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use ninebit::shortcut::{Shortcut, Shortcuts, Wanted};
+use ninebit::shortcut::{PixelSelection, Shortcut, Shortcuts};
 
 use crate::chance::Differences;
 use crate::explain::{Comparison, Counts, same};
@@ -163,7 +163,7 @@ impl Search<'_> {
         }
         let mut places: Vec<usize> = wanted.iter().map(|n| self.wrong[*n]).chain(self.right.iter().copied()).collect();
         places.sort_unstable();
-        let mask = Wanted::new(self.compared.size, places.iter().copied());
+        let mask = PixelSelection::new(self.compared.size, places.iter().copied());
         let Some(drawn) = self.renderer.draw(variant, Some(&mask)) else { return false };
         let (truth, other) = (self.compared.truth, self.compared.other);
         let mut predicted = Differences::default();

@@ -12,7 +12,7 @@ use ninebit_report::planes::{PlanesError, plane_arrays};
 use ninebit_report::trace_value;
 use ninebit_scene::assets::Bundle;
 use ninebit_scene::image::{ImageLimits, Rgba, decode};
-use ninebit_scene::{Loaded, SceneError, parse_with, render};
+use ninebit_scene::{LoadedScene, SceneError, parse_with, render};
 use serde_json::{Value, json};
 
 use crate::{Refused, frame, program, shader, tree};
@@ -239,7 +239,7 @@ impl Session {
         let loaded = parse_with(text, Path::new(name), &limits, &self.files);
         match loaded.and_then(|loaded| loaded.affordable(limits.shaded_pixels).map(|()| loaded)) {
             Ok(loaded) => {
-                let Loaded { scene, plan, warnings, source, .. } = loaded;
+                let LoadedScene { scene, plan, warnings, source, .. } = loaded;
                 let answer = json!({ "scene": described(&scene), "findings": findings(&warnings, &source) });
                 self.text = source.text;
                 self.loaded = Some((scene, plan.under(self.policies)));

@@ -6,17 +6,18 @@ use ninebit::limits::Limits;
 use ninebit::state::TextureImage;
 use ninebit_report::explain::{explain, explanation_text};
 use ninebit_report::{trace_json, trace_text};
-use ninebit_scene::{self as scene, Loaded};
+use ninebit_scene::{self as scene, LoadedScene};
 use std::path::Path;
 
-fn load(name: &str) -> Loaded {
+fn load(name: &str) -> LoadedScene {
     let path = format!("vectors/scenes/programs/{name}.ron");
     scene::load(&at(&path), &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 #[test]
 fn a_surface_in_every_notation_has_the_same_bytes() {
-    let words = |loaded: &Loaded| engine::render(&loaded.plan, &RenderOptions::default()).surfaces[0].words.clone();
+    let words =
+        |loaded: &LoadedScene| engine::render(&loaded.plan, &RenderOptions::default()).surfaces[0].words.clone();
     let definition = words(&load("dot3-combiners"));
     let stages = load("dot3-texture-stages");
     for name in ["dot3-texture-stages-text", "dot3-texture-stages-effect"] {
@@ -129,7 +130,7 @@ fn camera_space_coordinates_take_a_set_that_nothing_reads() {
 }
 
 /// Renders a quad of 8 x 8 pixels with the given fields of its draw. Returns the scene and the pixels.
-fn drawn(profile: &str, textures: &str, vertex: &str, fields: &str) -> (Loaded, Vec<[u8; 4]>) {
+fn drawn(profile: &str, textures: &str, vertex: &str, fields: &str) -> (LoadedScene, Vec<[u8; 4]>) {
     let corner = |x: i32, y: i32| format!("(position: ({x}, {y}, {}), {vertex})", f64::from(x) / 8.0);
     let text = format!(
         "(version: 1, profile: {profile}, targets: [(name: \"f\", width: 8, height: 8)], textures: {{ {textures} }}, draws: [\
@@ -205,7 +206,7 @@ fn first_levels_are_left_out() {
     let (whole, _) = drawn("Nv2a", CHECKS, "t0: (0.25, 0.5)", "textures: [\"t\"]");
     let later = CHECKS.replace("levels: All", "levels: All, first_level: 1");
     let (later, _) = drawn("Nv2a", &later, "t0: (0.25, 0.5)", "textures: [\"t\"]");
-    let texels = |loaded: &Loaded| match &loaded.scene.textures[0].image {
+    let texels = |loaded: &LoadedScene| match &loaded.scene.textures[0].image {
         TextureImage::Texels(texels) => (texels.width, texels.height, texels.levels, texels.words.clone()),
         TextureImage::Target { .. } | TextureImage::Depth { .. } => panic!("texels were given"),
     };

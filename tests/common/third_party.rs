@@ -15,7 +15,7 @@ use super::repository::at;
 use ninebit::engine::{self, RenderOptions};
 use ninebit::limits::Limits;
 use ninebit::state::Named;
-use ninebit_scene::{self as scene, Loaded};
+use ninebit_scene::{self as scene, LoadedScene};
 use serde_json::Value;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -96,7 +96,7 @@ fn caught(problem: impl Fn() -> Option<String>) -> Option<String> {
 }
 
 /// Reads a scene. A finding is a problem.
-pub fn load(text: &str) -> Result<Loaded, String> {
+pub fn load(text: &str) -> Result<LoadedScene, String> {
     scene::parse(text, Path::new("case.ron"), &Limits::default())
         .map_err(|error| format!("{}\n{text}", error.render(false)))
 }

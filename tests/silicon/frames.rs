@@ -12,17 +12,17 @@ use ninebit_report::trace_text;
 use std::path::{Path, PathBuf};
 
 /// A case and its rendered frame.
-struct Rendered {
+struct Drawing {
     case: Case,
     plan: Plan,
     surface: Surface,
 }
 
-impl Rendered {
-    fn new(case: Case) -> Rendered {
+impl Drawing {
+    fn new(case: Case) -> Drawing {
         let plan = Plan::compile(&case.scene, &PlanOptions::default()).unwrap();
         let surface = render(&plan, &RenderOptions::default()).surfaces.remove(0);
-        Rendered { case, plan, surface }
+        Drawing { case, plan, surface }
     }
 
     fn index(&self, (x, y): (u32, u32)) -> usize {
@@ -108,7 +108,7 @@ fn color([r, g, b, _]: [u8; 4]) -> u32 {
 }
 
 /// Compares the colours of a case. The covered pixels must be the same as in the capture, and only the known number of colours may differ.
-fn colors(rendered: &Rendered, keep: impl Fn((u32, u32)) -> bool) {
+fn colors(rendered: &Drawing, keep: impl Fn((u32, u32)) -> bool) {
     let case = &rendered.case;
     if let Some(folder) = captures() {
         let capture = load(&folder.join(case.capture));
@@ -132,7 +132,7 @@ fn colors(rendered: &Rendered, keep: impl Fn((u32, u32)) -> bool) {
 }
 
 fn whole(case: Case) {
-    colors(&Rendered::new(case), |_| true);
+    colors(&Drawing::new(case), |_| true);
 }
 
 #[test]
@@ -170,7 +170,7 @@ fn r7_float_colors() {
 fn r3_three_colors_and_depth() {
     const DIFFERING: usize = 0;
     const ZB: &str = "Depth_buffer/DepthFmt_z24_Cn_FZn_Mffffff_ZB.png";
-    let rendered = Rendered::new(cases::r3());
+    let rendered = Drawing::new(cases::r3());
     let buffer = captures().map(|folder| load(&folder.join(ZB)));
     let stored = |(x, y): (u32, u32)| {
         let [r, g, _, a] = buffer.as_ref().unwrap().get_pixel(x, y).0;

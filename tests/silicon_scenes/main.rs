@@ -50,7 +50,7 @@ fn folder() -> PathBuf {
 }
 
 /// A scene and its frame.
-struct Drawn {
+struct SceneDrawing {
     text: String,
     plan: Plan,
     surface: Surface,
@@ -64,7 +64,7 @@ fn written(case: &Case) -> (PathBuf, String) {
 }
 
 /// Renders a scene, with the images that are not part of the repository if it needs them.
-fn draw(case: &Case) -> Drawn {
+fn draw(case: &Case) -> SceneDrawing {
     let (file, text) = written(case);
     let place;
     let file = if !scene_files::captured(&text).is_empty() {
@@ -81,7 +81,7 @@ fn draw(case: &Case) -> Drawn {
     let loaded = scene::load(&file, &Limits::default()).unwrap_or_else(|error| panic!("{}", error.render(false)));
     assert!(loaded.warnings.is_empty(), "{}: a warning", case.name);
     let surface = render(&loaded.plan, &RenderOptions::default()).surfaces.remove(0);
-    Drawn { text, plan: loaded.plan, surface }
+    SceneDrawing { text, plan: loaded.plan, surface }
 }
 
 fn copy(from: &Path, to: &Path) {
@@ -95,7 +95,7 @@ fn copy(from: &Path, to: &Path) {
 }
 
 /// Compares a frame with the capture, pixel by pixel. Returns the differences, with the trace of the first one.
-fn against_capture(case: &Case, drawn: &Drawn, captured: &[[u8; 4]], compared: &[bool]) -> Option<String> {
+fn against_capture(case: &Case, drawn: &SceneDrawing, captured: &[[u8; 4]], compared: &[bool]) -> Option<String> {
     let ours = drawn.surface.rgba8();
     let different: Vec<usize> = (0..ours.len()).filter(|n| compared[*n] && ours[*n] != captured[*n]).collect();
     let total = compared.iter().filter(|compared| **compared).count();

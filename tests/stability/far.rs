@@ -6,7 +6,7 @@ use super::view::{Covered, draw, plan, scene, visit};
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::raster::interpolate::COORDINATE_LIMIT;
 use ninebit::state::Scene;
-use ninebit::texture::coordinates::{Coordinates, Interpolated, SampleCoordinates};
+use ninebit::texture::coordinates::{Coordinates, SampleCoordinates, VertexCoordinates};
 use ninebit_lab::chart::picture::{Axis, Drawing};
 
 /// Exponent of the coordinate at which the first strip of a draw ends: strip n, from the top, ends at 2^(10 + n) texels.
@@ -68,7 +68,7 @@ pub fn section() -> Section {
 /// Returns u of the model and the floor of the exact rational number, both in 1/256 texel.
 fn u(covered: &Covered<'_>) -> (i64, i64) {
     let (sample, coordinates) = (covered.sample(), Coordinates::new(covered.coordinates(), covered.unit));
-    let place = Interpolated {
+    let place = VertexCoordinates {
         unit: covered.unit,
         coordinates: &coordinates,
         at: &sample,

@@ -7,7 +7,7 @@ use ninebit::plan::{Plan, PlanOptions};
 use ninebit::raster::interpolate::Sample;
 use ninebit::raster::setup::Triangle;
 use ninebit::state::{Scene, TriangleVertices};
-use ninebit::texture::coordinates::{Coordinates, Interpolated, SampleCoordinates};
+use ninebit::texture::coordinates::{Coordinates, SampleCoordinates, VertexCoordinates};
 use ninebit::texture::lod;
 use ninebit::texture::planned::PlannedUnit;
 use ninebit_lab::chart::tiles::Tile;
@@ -105,7 +105,7 @@ impl Covered<'_> {
     pub fn lod(&self) -> i32 {
         let coordinates = Coordinates::new(self.coordinates(), self.unit);
         let at = self.sample();
-        let place = Interpolated {
+        let place = VertexCoordinates {
             unit: self.unit,
             coordinates: &coordinates,
             at: &at,

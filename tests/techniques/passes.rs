@@ -3,19 +3,19 @@
 use ninebit::engine::{RenderOptions, render};
 use ninebit::limits::Limits;
 use ninebit_report::explain::explain;
-use ninebit_scene::{self as scene, Loaded};
+use ninebit_scene::{self as scene, LoadedScene};
 
-fn load(name: &str) -> Loaded {
+fn load(name: &str) -> LoadedScene {
     let path = super::folder().join("orthogonal-illumination-mapping").join(name).with_extension("ron");
     scene::load(&path, &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn words(loaded: &Loaded) -> Vec<u32> {
+fn words(loaded: &LoadedScene) -> Vec<u32> {
     render(&loaded.plan, &RenderOptions::default()).surfaces[0].words.clone()
 }
 
 /// Returns the names of the draws that are left out because they change nothing visible.
-fn left_out(loaded: &Loaded) -> Vec<String> {
+fn left_out(loaded: &LoadedScene) -> Vec<String> {
     let draws = explain(&loaded.scene, &loaded.plan);
     let gone = draws.into_iter().filter(|draw| draw.dropped.iter().any(|line| line.starts_with("the whole draw:")));
     gone.map(|draw| draw.name).collect()

@@ -19,8 +19,8 @@ use ninebit::shortcut::{self, Shortcuts};
 use ninebit::state::{Named, Policies};
 use ninebit_files::output::{Compression, encode_png};
 use ninebit_files::picture::surface_digest;
-use ninebit_scene::assets::Gathered;
-use ninebit_scene::{Loaded, load_with, parse};
+use ninebit_scene::assets::RecordingFolder;
+use ninebit_scene::{LoadedScene, load_with, parse};
 use ninebit_web::Session;
 use serde_json::{Value, json};
 use std::io::Write;
@@ -89,8 +89,8 @@ fn node(what: &str, scenes: &[(PathBuf, Vec<String>)]) -> Vec<Value> {
     answers.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
-fn load(path: &Path) -> Option<(Loaded, Vec<String>)> {
-    let gathered = Gathered::default();
+fn load(path: &Path) -> Option<(LoadedScene, Vec<String>)> {
+    let gathered = RecordingFolder::default();
     let loaded = load_with(path, &Limits::default(), &gathered).ok()?;
     Some((loaded, gathered.bundle().files.into_keys().collect()))
 }

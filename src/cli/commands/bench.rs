@@ -9,7 +9,7 @@ use ninebit::engine::Renderer;
 use ninebit::threads;
 use ninebit_files::read::page;
 
-use super::scene::{Failed, each};
+use super::scene::{SceneFailure, each};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -78,7 +78,7 @@ struct Document {
     isa: &'static str,
     threads: usize,
     scenes: Vec<Measurement>,
-    failed: Vec<Failed>,
+    failed: Vec<SceneFailure>,
 }
 
 /// Draws each scene many times and prints how long that takes.

@@ -4,7 +4,7 @@ use super::*;
 use std::fmt::Write;
 
 use ninebit::engine;
-use ninebit_report::Shaded;
+use ninebit_report::ShadingWork;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -18,9 +18,9 @@ pub(crate) struct Arguments {
 /// Checks and plans a scene and prints its cost.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let (scene, plan) = arguments.scene.load(context)?;
-    let (cost, shaded) = (Cost::from_scene(&scene), Shaded::from_draws(engine::shaded(&plan)));
+    let (cost, shaded) = (Cost::from_scene(&scene), ShadingWork::from_draws(engine::shaded(&plan)));
     let value = || {
-        let Shaded { pixels, exact, seconds } = shaded;
+        let ShadingWork { pixels, exact, seconds } = shaded;
         let shaded = json!({ "pixels": pixels, "exact": exact, "estimated_seconds": seconds });
         json!({ "format": "ninebit-check-1", "profile": scene.profile.name(), "cost": cost, "shaded": shaded })
     };
@@ -28,7 +28,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
 }
 
 /// Returns the cost as a table.
-fn text(scene: &Scene, cost: &Cost, shaded: &Shaded) -> String {
+fn text(scene: &Scene, cost: &Cost, shaded: &ShadingWork) -> String {
     let mut text = String::new();
     let mut row = |name: &str, value: String| {
         let _ = writeln!(text, "{name:<16}{value}");

@@ -9,7 +9,7 @@ use maud::{DOCTYPE, PreEscaped, html};
 use ninebit::state::{MipFilter, PolygonModes, ShaderStage, TextureFormat, TextureKind};
 use ninebit_files::output::write_below;
 use ninebit_files::pending::PendingFolder;
-use ninebit_scene::assets::Gathered;
+use ninebit_scene::assets::RecordingFolder;
 use ninebit_scene::{Heading, load_with};
 
 use crate::page;
@@ -110,7 +110,7 @@ fn site(place: &Path) -> Result<PendingFolder, Failure> {
 
 /// Writes the page and the picture of a scene.
 fn exhibit(path: &Path, name: &str, site: &Path, work: WorkArguments) -> Result<Exhibit, Failure> {
-    let gathered = Gathered::default();
+    let gathered = RecordingFolder::default();
     let loaded = load_with(path, &Limits::default(), &gathered).map_err(scene::refused)?;
     loaded.affordable(work.pixels).map_err(scene::refused)?;
     let picture =

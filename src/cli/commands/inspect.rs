@@ -10,8 +10,8 @@ use base64::engine::general_purpose::STANDARD;
 use ninebit::engine::render;
 use ninebit::shortcut::{Shortcut, Shortcuts};
 use ninebit::state::{Named, POLICIES};
-use ninebit_scene::assets::Gathered;
-use ninebit_scene::{Heading, Loaded};
+use ninebit_scene::assets::RecordingFolder;
+use ninebit_scene::{Heading, LoadedScene};
 use serde_json::Value;
 
 use super::scene::refused;
@@ -42,7 +42,7 @@ fn shortcuts(names: &str) -> Result<Shortcuts, String> {
 /// Writes a page that shows the scene and computes it in the browser.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let policies = arguments.state.policies()?;
-    let gathered = Gathered::default();
+    let gathered = RecordingFolder::default();
     let loaded = arguments.state.load(&arguments.scene, &gathered, context)?;
     loaded.affordable(arguments.work.pixels).map_err(refused)?;
     arguments.output.check()?;
@@ -65,8 +65,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
 /// Returns what a page holds of its scene. `picture` is shown before the module is compiled.
 pub(super) fn scene_data(
     name: &str,
-    loaded: Loaded,
-    gathered: Gathered,
+    loaded: LoadedScene,
+    gathered: RecordingFolder,
     picture: Option<&Picture>,
 ) -> Result<Value, Failure> {
     let mut bundle = gathered.bundle();

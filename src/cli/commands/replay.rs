@@ -4,7 +4,7 @@ use super::*;
 use std::ffi::OsStr;
 use std::fs::OpenOptions;
 
-use crate::replay::{Entry, Filter, Options, Replayed, find, part, replay, report};
+use crate::replay::{Entry, Filter, Options, SceneReplay, find, part, replay, report};
 use crate::shard::Shard;
 use ninebit_files::output::{make_folder, write_stdout};
 
@@ -50,7 +50,7 @@ enum ReportRequest {
     /// Annotations and a step summary for GitHub Actions.
     Github,
     /// The function that makes a document, and its destination.
-    File(fn(&[Replayed]) -> String, Destination),
+    File(fn(&[SceneReplay]) -> String, Destination),
 }
 
 impl ReportRequest {
@@ -98,7 +98,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         write_text(&text)?;
     }
     let exits = [exit, write_reports(&arguments.reports, &replayed, context)].map(|exit| exit as u8);
-    let worst = replayed.iter().map(Replayed::exit_code).chain(exits).max().unwrap_or(0);
+    let worst = replayed.iter().map(SceneReplay::exit_code).chain(exits).max().unwrap_or(0);
     match Exit::from_code(worst) {
         Exit::Success => Ok(()),
         exit => Err(Failure { exit, report: Report::Silent }),
@@ -153,7 +153,7 @@ fn entries(arguments: &Arguments) -> Result<Vec<Entry>, Failure> {
 }
 
 /// Writes the reports. Prints the errors of those that cannot be written. Returns the resulting status.
-fn write_reports(reports: &[ReportRequest], replayed: &[Replayed], context: Context) -> Exit {
+fn write_reports(reports: &[ReportRequest], replayed: &[SceneReplay], context: Context) -> Exit {
     let mut exit = Exit::Success;
     for wanted in reports {
         let written = match wanted {
@@ -175,7 +175,7 @@ fn report_unwritten(error: OutputError, context: Context) -> Exit {
 }
 
 /// Prints annotations to stdout, and appends the summary to the file that GitHub Actions names.
-fn github(replayed: &[Replayed]) -> Result<(), OutputError> {
+fn github(replayed: &[SceneReplay]) -> Result<(), OutputError> {
     write_stdout(report::annotations(replayed).as_bytes())?;
     let Some(path) = std::env::var_os("GITHUB_STEP_SUMMARY").filter(|path| !path.is_empty()).map(PathBuf::from) else {
         return Ok(());

@@ -14,7 +14,7 @@ use ninebit_scene::assets::{Assets, Folder};
 use ninebit_scene::change::Change;
 use ninebit_scene::truth::Truth;
 use ninebit_scene::write::SceneFiles;
-use ninebit_scene::{self as scene, Loaded, SceneError};
+use ninebit_scene::{self as scene, LoadedScene, SceneError};
 use serde::Serialize;
 
 use super::terminal::{self, Level};
@@ -113,7 +113,7 @@ pub(crate) fn load_with_truth(
 }
 
 /// Reads and checks the scene file at `path`; warnings go to stderr.
-fn read(path: &Path, state: &StateArguments, context: Context) -> Result<(Loaded, Policies), Failure> {
+fn read(path: &Path, state: &StateArguments, context: Context) -> Result<(LoadedScene, Policies), Failure> {
     let policies = state.policies.policies()?;
     Ok((state.load(path, &Folder, context)?, policies))
 }
@@ -130,7 +130,7 @@ impl StateArguments {
     }
 
     /// Reads, changes and checks the scene file at `path`, with the files that it names from `assets`; warnings go to stderr.
-    pub(crate) fn load(&self, path: &Path, assets: &dyn Assets, context: Context) -> Result<Loaded, Failure> {
+    pub(crate) fn load(&self, path: &Path, assets: &dyn Assets, context: Context) -> Result<LoadedScene, Failure> {
         let changes: Result<Vec<Change>, _> = self.changes.iter().map(|change| change.parse()).collect();
         let loaded =
             scene::load_changed(path, &Limits::default(), assets, &changes.map_err(refused)?).map_err(refused)?;
@@ -175,13 +175,13 @@ pub(crate) struct Batch<T> {
     /// Results of the scenes without a failure.
     pub(crate) made: Vec<T>,
     /// The scenes with a failure.
-    pub(crate) failed: Vec<Failed>,
+    pub(crate) failed: Vec<SceneFailure>,
     exit: Exit,
 }
 
 /// A scene with a failure.
 #[derive(Debug, Serialize)]
-pub(crate) struct Failed {
+pub(crate) struct SceneFailure {
     scene: String,
     /// Exit status of the failure.
     exit: u8,
@@ -201,7 +201,7 @@ pub(crate) fn each<T>(
             Err(failure) => {
                 terminal::print(Level::Error, &failure.report, context.color);
                 let (exit, message) = (failure.exit as u8, failure.report.plain());
-                each.failed.push(Failed { scene: shown::lossless(scene), exit, message });
+                each.failed.push(SceneFailure { scene: shown::lossless(scene), exit, message });
                 each.exit = Exit::from_code(exit.max(each.exit as u8));
             }
         }

@@ -8,7 +8,7 @@ use super::*;
 use ninebit::state::{BORDER_TEXELS, CUBE_FACES, Level, TextureFormat, TextureKind};
 use ninebit_scene::dds::FACES;
 
-use source::Opened;
+use source::TextureSource;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -85,7 +85,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
 }
 
 /// Describes the texture without its texels.
-fn describe(opened: &Opened) -> String {
+fn describe(opened: &TextureSource) -> String {
     let (texels, format) = (&opened.texels, opened.format);
     let (chain, words) = Level::chain(format, texels.width, texels.height, texels.levels, texels.border);
     let sides: Vec<String> = chain.iter().map(|level| format!("{} x {}", level.width, level.height)).collect();

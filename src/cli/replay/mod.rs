@@ -26,7 +26,7 @@ pub use cause::Cause;
 pub use find::{Entry, EntryKind, FindError, find};
 pub(crate) use find::{Filter, part};
 use outcome::Summary;
-pub use outcome::{Comparison, Difference, Origin, Outcome, Pixel, Problem, ProblemKind, Replayed, Traces};
+pub use outcome::{Comparison, Difference, Origin, Outcome, Pixel, Problem, ProblemKind, SceneReplay, Traces};
 
 /// Options of a replay.
 #[derive(Clone, Debug, Default)]
@@ -52,7 +52,7 @@ pub struct Options {
 /// Replays scenes. Returns their results in the order of `entries`. Calls `progress` with the number of finished scenes, from any thread.
 ///
 /// A panic becomes the result of its scene: [`ProblemKind::Internal`].
-pub fn replay(entries: &[Entry], options: &Options, progress: &(dyn Fn(usize) + Sync)) -> Vec<Replayed> {
+pub fn replay(entries: &[Entry], options: &Options, progress: &(dyn Fn(usize) + Sync)) -> Vec<SceneReplay> {
     each(entries, options.render.threads, progress, &|entry| scene::replay(entry, options))
 }
 
@@ -61,11 +61,11 @@ fn each(
     entries: &[Entry],
     threads: usize,
     progress: &(dyn Fn(usize) + Sync),
-    work: &(dyn Fn(&Entry) -> Replayed + Sync),
-) -> Vec<Replayed> {
+    work: &(dyn Fn(&Entry) -> SceneReplay + Sync),
+) -> Vec<SceneReplay> {
     let done = std::sync::atomic::AtomicUsize::new(0);
     let one = |entry: &Entry| {
-        let replayed = catch_panic(|| work(entry)).unwrap_or_else(|panic| Replayed {
+        let replayed = catch_panic(|| work(entry)).unwrap_or_else(|panic| SceneReplay {
             name: entry.name.clone(),
             path: entry.path.clone(),
             outcome: Outcome::Failed(Problem::internal(&panic)),
@@ -89,13 +89,13 @@ mod tests {
         let work = |entry: &Entry| {
             assert!(entry.name != "b", "a table of {} rows", 3);
             let Entry { name, path, .. } = entry.clone();
-            Replayed { name, path, outcome: Outcome::Match, unwritten: Vec::new() }
+            SceneReplay { name, path, outcome: Outcome::Match, unwritten: Vec::new() }
         };
         let done = std::sync::Mutex::new(Vec::new());
         let progress = |count| done.lock().expect("no panic here").push(count);
         for threads in [1, 3] {
             let replayed = each(&entries, threads, &progress, &work);
-            let codes: Vec<u8> = replayed.iter().map(Replayed::exit_code).collect();
+            let codes: Vec<u8> = replayed.iter().map(SceneReplay::exit_code).collect();
             assert_eq!(codes, [0, 6, 0, 0]);
             let Outcome::Failed(problem) = &replayed[1].outcome else { panic!("{replayed:?}") };
             assert_eq!((problem.code, problem.kind), ("NB0801", ProblemKind::Internal));

@@ -14,7 +14,7 @@ use ninebit_scene::diff::{self, CHANNELS, histogram_text, pixels, share};
 
 /// Result of a replayed scene.
 #[derive(Clone, Debug)]
-pub struct Replayed {
+pub struct SceneReplay {
     /// Name in reports: [`Entry::name`](super::Entry::name).
     pub name: String,
     /// The scene's file, or the expectation if it has no scene.
@@ -291,7 +291,7 @@ pub(super) fn short_digest(digest: &str) -> String {
     digest.chars().take(12).collect()
 }
 
-impl Replayed {
+impl SceneReplay {
     /// Returns the outcome in one word.
     pub fn status(&self) -> &'static str {
         match &self.outcome {
@@ -349,7 +349,7 @@ pub(crate) struct Summary {
 
 impl Summary {
     /// Counts the outcomes.
-    pub(crate) fn from_replays(all: &[Replayed]) -> Self {
+    pub(crate) fn from_replays(all: &[SceneReplay]) -> Self {
         let mut summary = Summary { scenes: all.len(), ..Summary::default() };
         for one in all {
             *match &one.outcome {

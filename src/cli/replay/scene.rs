@@ -6,7 +6,7 @@ use super::Options;
 use super::bless::{self, refused, unwritten};
 use super::cause::{self, ReplayCause};
 use super::find::{Entry, EntryKind};
-use super::outcome::{Comparison, Difference, Origin, Outcome, Pixel, Problem, ProblemKind, Replayed, Traces};
+use super::outcome::{Comparison, Difference, Origin, Outcome, Pixel, Problem, ProblemKind, SceneReplay, Traces};
 use super::panels::panels;
 use crate::expectation::{Expectation, Mismatch, masked_digest};
 use ninebit::diagnostic::{ErrorKind, Severity};
@@ -23,7 +23,7 @@ use ninebit_scene::diff;
 use ninebit_scene::image::{self, ImageLimits, Rgba};
 
 /// Replays one scene.
-pub(super) fn replay(entry: &Entry, options: &Options) -> Replayed {
+pub(super) fn replay(entry: &Entry, options: &Options) -> SceneReplay {
     let mut unwritten = Vec::new();
     let path = shown::path(&entry.path);
     let outcome = match &entry.kind {
@@ -39,7 +39,7 @@ pub(super) fn replay(entry: &Entry, options: &Options) -> Replayed {
         }
     };
     let outcome = outcome.unwrap_or_else(Outcome::Failed);
-    let mut replayed = Replayed { name: entry.name.clone(), path: entry.path.clone(), outcome, unwritten };
+    let mut replayed = SceneReplay { name: entry.name.clone(), path: entry.path.clone(), outcome, unwritten };
     if let Some(folder) = &options.artifacts {
         write_artifacts(&mut replayed, folder);
     }
@@ -52,7 +52,7 @@ fn artifact_path(folder: &Path, name: &str, extension: &str) -> PathBuf {
 }
 
 /// Writes the details of a difference.
-fn write_artifacts(replayed: &mut Replayed, folder: &Path) {
+fn write_artifacts(replayed: &mut SceneReplay, folder: &Path) {
     let Outcome::Differs(difference) = &replayed.outcome else { return };
     let mut files = vec![
         ("drawn.png", difference.picture.clone()),

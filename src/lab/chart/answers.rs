@@ -145,7 +145,7 @@ impl Measurements {
 }
 
 /// A verdict and the figures behind it; `None` if scenes were not measured.
-type Decided = Option<(&'static str, String)>;
+type Winner = Option<(&'static str, String)>;
 
 fn verdict(holds: bool) -> &'static str {
     if holds { "confirmed" } else { "refuted" }
@@ -180,14 +180,14 @@ fn figures(way: &Technique) -> String {
     format!("{}, {} levels{turned}", describe(way), way.accuracy.banding.levels)
 }
 
-fn combiners_or_cube(smooth: &Light<'_>) -> Decided {
+fn combiners_or_cube(smooth: &Light<'_>) -> Winner {
     let (stages, cube) = (smooth.way("smooth combiners")?, smooth.way("smooth cube 8")?);
     let plain = smooth.way("smooth plain")?;
     let text = format!("{}; {}; neither: {}", figures(stages), figures(cube), figures(plain));
     Some((verdict(stages.rms() < cube.rms()), capital(&text)))
 }
 
-fn sixteen_bits(smooth: &Light<'_>) -> Decided {
+fn sixteen_bits(smooth: &Light<'_>) -> Winner {
     let best = smooth.ways.first()?;
     let sixteen = smooth.way("smooth cube 16 table")?;
     let eight = smooth.way("smooth cube 8 table")?;
@@ -195,7 +195,7 @@ fn sixteen_bits(smooth: &Light<'_>) -> Decided {
     Some((verdict(best.entry == sixteen.entry), capital(&text)))
 }
 
-fn bands(smooth: &Light<'_>) -> Decided {
+fn bands(smooth: &Light<'_>) -> Winner {
     let (squared, table) = (smooth.way("smooth cube 8")?, smooth.way("smooth cube 8 table")?);
     let of = |way: &Technique| (way.accuracy.banding.levels, way.accuracy.banding.truth_levels);
     let ((few, wanted), (many, _)) = (of(squared), of(table));
@@ -205,7 +205,7 @@ fn bands(smooth: &Light<'_>) -> Decided {
 }
 
 /// Decides whether bump maps make the difference between two techniques vanish.
-fn vanish(smooth: &Light<'_>, bumps: &Light<'_>) -> Decided {
+fn vanish(smooth: &Light<'_>, bumps: &Light<'_>) -> Winner {
     let ratio = |light: &Light<'_>, names: [&str; 2]| {
         let [a, b] = names.map(|name| light.way(name).map(Technique::rms));
         let (a, b) = (a?, b?);
@@ -224,7 +224,7 @@ fn vanish(smooth: &Light<'_>, bumps: &Light<'_>) -> Decided {
     Some((verdict, text))
 }
 
-fn speeds(smooth: &Light<'_>) -> Decided {
+fn speeds(smooth: &Light<'_>) -> Winner {
     let ways = ["smooth vertex", "smooth combiners", "smooth cube 16 table"].map(|name| smooth.way(name));
     let [Some(vertex), Some(stages), Some(sixteen)] = ways else { return None };
     let all = [vertex, stages, sixteen];

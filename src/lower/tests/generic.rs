@@ -385,7 +385,7 @@ fn shown(generic: &Generic, unit: &str, case: &Case<'_>) -> Option<Shown> {
             let draws = &placement.draws;
             let pixels =
                 draws.iter().map(|draw| pixel(generic, &[], draw.combiners.as_ref().unwrap(), inputs)).collect();
-            let reads: Vec<Vec<gpu::Read>> = draws.iter().map(|draw| draw.reads.clone()).collect();
+            let reads: Vec<Vec<gpu::Contribution>> = draws.iter().map(|draw| draw.reads.clone()).collect();
             let kinds: Vec<_> = case.results.iter().map(|column| (column.name.clone(), column.kind)).collect();
             let results = case.row.results.clone();
             Some((

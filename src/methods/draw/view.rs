@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::celsius::Known;
+use crate::celsius::StateWord;
 use crate::class::{self, Family};
 use crate::gap::Gap;
 use crate::state::State;
@@ -81,7 +81,7 @@ impl<'a> View<'a> {
     /// Returns a word if it is known.
     pub(crate) fn known(&self, method: u32) -> Option<u32> {
         match self.state.known(method) {
-            Known::Word(word) => Some(word),
+            StateWord::Word(word) => Some(word),
             _ => None,
         }
     }
@@ -106,9 +106,9 @@ impl<'a> View<'a> {
     /// Notes a word that is missing, by Kelvin's number.
     pub(crate) fn missing(&mut self, method: u32) {
         match self.state.known(method) {
-            Known::Unset(number) => _ = self.unset.insert(number),
-            Known::Word(_) => {}
-            Known::Absent => {
+            StateWord::Unset(number) => _ = self.unset.insert(number),
+            StateWord::Word(_) => {}
+            StateWord::Absent => {
                 let what = format!("the class has nothing in place of Kelvin's {}", Family::Kelvin.label(method));
                 self.note(Gap::NotModelled(what));
             }

@@ -51,24 +51,24 @@ impl<'o, L: Lane, O: Observer> Direct<'o, L, O> {
 
 /// A sum, and the rule that its rounding is attributed to.
 #[derive(Clone, Copy, Debug)]
-pub struct Ruled<S> {
+pub struct AttributedSum<S> {
     /// The sum, before rounding.
     pub sum: S,
     rule: Rule,
 }
 
-impl<S> Ruled<S> {
+impl<S> AttributedSum<S> {
     /// Creates a sum, which keeps the rule only for observers that measure or count.
     #[inline(always)]
-    fn new<O: Observer>(sum: S, rule: Rule) -> Ruled<S> {
-        Ruled { sum, rule: if O::MEASURES || O::COUNTS { rule } else { Rule::Cmb6 } }
+    fn new<O: Observer>(sum: S, rule: Rule) -> AttributedSum<S> {
+        AttributedSum { sum, rule: if O::MEASURES || O::COUNTS { rule } else { Rule::Cmb6 } }
     }
 }
 
 impl<L: Lane, O: Observer> Algebra for Direct<'_, L, O> {
     type Register = L;
     type Factor = L::Mapped;
-    type Sum = Ruled<L::Full>;
+    type Sum = AttributedSum<L::Full>;
     type Choice = bool;
 
     #[inline(always)]
@@ -81,7 +81,7 @@ impl<L: Lane, O: Observer> Algebra for Direct<'_, L, O> {
     }
     #[inline(always)]
     fn sum(&mut self, site: Site, value: impl FnOnce(&mut Self) -> Self::Sum) -> Self::Sum {
-        if self.sites & site.0 == 0 { Ruled::new::<O>(L::ZERO.widened(), Rule::Cmb6) } else { value(self) }
+        if self.sites & site.0 == 0 { AttributedSum::new::<O>(L::ZERO.widened(), Rule::Cmb6) } else { value(self) }
     }
     #[inline(always)]
     fn register(&mut self, site: Site, value: impl FnOnce(&mut Self) -> L) -> L {
@@ -104,7 +104,7 @@ impl<L: Lane, O: Observer> Algebra for Direct<'_, L, O> {
         first: Site,
         mut value: impl FnMut(&mut Self, usize) -> Self::Sum,
     ) -> [Self::Sum; N] {
-        let mut all = [Ruled::new::<O>(L::ZERO.widened(), Rule::Cmb6); N];
+        let mut all = [AttributedSum::new::<O>(L::ZERO.widened(), Rule::Cmb6); N];
         if Self::EXACT || self.sites & first.channels(N) != 0 {
             for c in 0..N {
                 if !Self::EXACT || self.sites & first.channel(c).0 != 0 {
@@ -142,19 +142,19 @@ impl<L: Lane, O: Observer> Algebra for Direct<'_, L, O> {
     #[inline(always)]
     fn product(&mut self, rule: Rule, a: L::Mapped, b: L::Mapped) -> Self::Sum {
         self.count(Work::Products, rule);
-        Ruled::new::<O>(a.product(b), rule)
+        AttributedSum::new::<O>(a.product(b), rule)
     }
     #[inline(always)]
     fn add(&mut self, rule: Rule, a: Self::Sum, b: Self::Sum) -> Self::Sum {
-        Ruled::new::<O>(a.sum + b.sum, rule)
+        AttributedSum::new::<O>(a.sum + b.sum, rule)
     }
     #[inline(always)]
     fn subtract(&mut self, rule: Rule, a: Self::Sum, b: Self::Sum) -> Self::Sum {
-        Ruled::new::<O>(a.sum - b.sum, rule)
+        AttributedSum::new::<O>(a.sum - b.sum, rule)
     }
     #[inline(always)]
     fn widened(&mut self, rule: Rule, x: L) -> Self::Sum {
-        Ruled::new::<O>(x.widened(), rule)
+        AttributedSum::new::<O>(x.widened(), rule)
     }
     #[inline(always)]
     fn choice(&mut self, select: MuxSelect, spare0_alpha: L) -> bool {

@@ -3,7 +3,7 @@
 //! [`evaluate`] and [`write()`] are the rules, written in the operations of an [`Algebra`]. [`run`] applies them to
 //! numbers, with reports.
 
-use super::direct::{Direct, Ruled};
+use super::direct::{AttributedSum, Direct};
 use super::output::takes_cd;
 use super::registers::Registers;
 use super::report;
@@ -102,7 +102,7 @@ pub type StageOf<A> =
     StageValues<<A as Algebra>::Factor, <A as Algebra>::Sum, <A as Algebra>::Register, <A as Algebra>::Choice>;
 
 /// The values of a stage on the numbers of a lane.
-pub type StageOn<L> = StageValues<<L as Lane>::Mapped, Ruled<<L as Lane>::Full>, L, bool>;
+pub type StageOn<L> = StageValues<<L as Lane>::Mapped, AttributedSum<<L as Lane>::Full>, L, bool>;
 
 /// Computes the values of a stage from the registers before it.
 #[inline(always)]

@@ -1,6 +1,6 @@
 //! The reports of a general stage to an observer. Nothing here computes a value that is used.
 
-use super::direct::Ruled;
+use super::direct::AttributedSum;
 use super::general::{PlannedPortion, PlannedStage, StageOn, source_channel};
 use super::mapping;
 use super::output::{biased, rounded_after, scaled};
@@ -13,7 +13,7 @@ const PRODUCT_NAMES: [&str; 3] = ["AB", "CD", "sum"];
 const INPUT_NAMES: [&str; 4] = ["A", "B", "C", "D"];
 
 /// All values that a portion computes, on numbers.
-type Values<L, const N: usize> = super::general::Values<<L as Lane>::Mapped, Ruled<<L as Lane>::Full>, L, N>;
+type Values<L, const N: usize> = super::general::Values<<L as Lane>::Mapped, AttributedSum<<L as Lane>::Full>, L, N>;
 
 /// NUM-5: reports the constant colours of a stage or of the final combiner.
 pub(crate) fn constants<O: Observer>(block: &str, constants: [[u8; 4]; 2], observer: &mut O) {

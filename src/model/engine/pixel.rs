@@ -13,7 +13,7 @@ use crate::raster::setup::significant;
 use crate::rop::{blend, stencil, surface};
 use crate::state::*;
 use crate::texture::chain::Chain;
-use crate::texture::coordinates::Interpolated;
+use crate::texture::coordinates::VertexCoordinates;
 use crate::texture::planned::{Image, PlannedUnit};
 use crate::texture::unit;
 use crate::trace::{Decision, Observer, Rule, Step, Work, report};
@@ -285,10 +285,10 @@ impl TriangleContext<'_> {
         unit: &'s PlannedUnit,
         sample: &'s Sample<'s>,
         pixel: (i64, i64),
-    ) -> Option<Interpolated<'s>> {
+    ) -> Option<VertexCoordinates<'s>> {
         let coordinates = self.coordinates_of(unit.index)?;
         let (vertices, perspective) = (self.vertices(), self.draw.perspective);
-        Some(Interpolated { unit, coordinates, at: sample, pixel, vertices, perspective })
+        Some(VertexCoordinates { unit, coordinates, at: sample, pixel, vertices, perspective })
     }
 
     /// ROP-1, STN-1, DEP-1, DEP-2: runs the tests in their order. Returns `None` if the fragment is dropped.

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use super::tracing::{Pixel, TraceError};
 use super::{BAND, TextureWords, cleared, cleared_colors, draw_defined, walk};
-use crate::number::{Lane, Paired};
+use crate::number::{Lane, Pair};
 use crate::plan::{Plan, PlannedDraw};
 use crate::state::Rectangle;
 use crate::texture::planned::Image;
@@ -106,7 +106,7 @@ pub fn planes(plan: &Plan, names: &[String], options: &PlaneOptions) -> Result<V
         found: vec![None; names.len()],
     };
     let bands = match options.ideal {
-        true => observe::<Paired, _>(plan, options, |_| true, record)?,
+        true => observe::<Pair, _>(plan, options, |_| true, record)?,
         false => observe::<i32, _>(plan, options, |_| true, record)?,
     };
     let mut planes = vec![Plane::default(); names.len()];

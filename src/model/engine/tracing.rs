@@ -6,7 +6,7 @@ use std::fmt;
 use super::context::TriangleContext;
 use super::pixel::{DepthStencil, Fragment};
 use super::{TextureWords, cleared, cleared_colors, draw_defined};
-use crate::number::{Lane, Paired};
+use crate::number::{Lane, Pair};
 use crate::plan::{Plan, PlannedDraw};
 use crate::raster::assemble::Piece;
 use crate::raster::stroke::Figure;
@@ -258,7 +258,7 @@ impl<'a> Tracer<'a> {
     /// # Errors
     /// An error of `each`, which ends the trace.
     pub fn run<E>(&self, each: impl FnMut(DrawTrace) -> Result<(), E>) -> Result<TraceEnd, E> {
-        self.run_with::<Paired, _, _>(Recorder::default, |recorder| recorder.steps, each)
+        self.run_with::<Pair, _, _>(Recorder::default, |recorder| recorder.steps, each)
     }
 
     /// Does the same as [`run`](Self::run) in a lane, with an observer for each kept fragment that hands its steps over.

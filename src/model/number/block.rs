@@ -133,7 +133,7 @@ pub struct Narrow(pub i16);
 
 /// Half of an expanded value, -128..=127.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Halved(i16);
+pub struct Half(i16);
 
 /// A quarter of a sum of products, saturated. Sums of 16256 and more are a full register, so the saturation is
 /// invisible.
@@ -150,11 +150,11 @@ impl Sum for Quarter {
     }
 }
 
-impl Factor for Halved {
+impl Factor for Half {
     type Sum = Quarter;
     type Register = Narrow;
     #[inline(always)]
-    fn product(self, other: Halved) -> Quarter {
+    fn product(self, other: Half) -> Quarter {
         Quarter(self.0 * other.0)
     }
 }
@@ -189,7 +189,7 @@ wrapped! {
 
 impl Register for Narrow {
     type Factor = Narrow;
-    type Expanded = Halved;
+    type Expanded = Half;
     const ZERO: Narrow = Narrow(0);
     const ONE: Narrow = Narrow(255);
     const HALF: Narrow = Narrow(128);
@@ -202,8 +202,8 @@ impl Register for Narrow {
         self
     }
     #[inline(always)]
-    fn twice(self) -> Halved {
-        Halved(self.0)
+    fn twice(self) -> Half {
+        Half(self.0)
     }
     #[inline(always)]
     fn halved(self) -> Narrow {

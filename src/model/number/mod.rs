@@ -7,10 +7,10 @@
 //! | lane | meaning | used by |
 //! |---|---|---|
 //! | `i32` | the definition | the scalar engine |
-//! | [`Paired`] | the definition and the ideal side by side; the definition takes every decision | traces |
+//! | [`Pair`] | the definition and the ideal side by side; the definition takes every decision | traces |
 //! | `f64` | the ideal: the vendor's formulas in real numbers, without rounding | comparisons, the second half of
-//! [`Paired`] |
-//! | [`Paired`] of [`IdealTracks`] | the definition and several ideals, which attribute errors to rules | comparisons |
+//! [`Pair`] |
+//! | [`Pair`] of [`IdealTracks`] | the definition and several ideals, which attribute errors to rules | comparisons |
 //! | `i16`, `u16` | the definition in 16 bits, for loops over blocks of pixels | the fast engine |
 //! | [`Narrow`] | `i16` whose expanded products stay in 16 bits | the fast engine |
 //! | [`Lanes16`] of `i32` | sixteen numbers of the definition side by side | sweeps of vectors |
@@ -51,18 +51,18 @@ mod ideal_tracks;
 mod integer;
 mod lanes16;
 pub mod light;
-mod paired;
+mod pair;
 mod part;
 mod real;
 mod scalar;
 pub mod transform;
 
-pub use block::{Halved, Narrow, Quarter, Swar2};
+pub use block::{Half, Narrow, Quarter, Swar2};
 pub use ideal_tracks::{IDEAL_TRACKS, IdealTracks};
 pub use integer::{Choice, Integer, newton_root};
 pub(crate) use integer::{LEAST_TOP, align};
 pub use lanes16::{LANES, Lanes16};
-pub use paired::Paired;
+pub use pair::Pair;
 pub use part::Part;
 pub use scalar::{Halves, Quarters};
 
@@ -235,7 +235,7 @@ pub trait Lane: Blend + Register<Factor = <Self as Lane>::Mapped, Expanded = <Se
     fn observe_weight(weight: Self::Weight) -> (i64, Option<f64>);
 }
 
-/// A lane of real numbers: the second half of [`Paired`].
+/// A lane of real numbers: the second half of [`Pair`].
 pub trait Ideal:
     Lane<Mapped = Self, Full = Self>
     + Blend<Weight = Self>
@@ -243,7 +243,7 @@ pub trait Ideal:
     + Factor<Sum = Self, Register = Self>
     + Sum<Register = Self>
 {
-    /// Whether a [`Paired`] lane reads texels where this ideal, and not the definition, finds them.
+    /// Whether a [`Pair`] lane reads texels where this ideal, and not the definition, finds them.
     const LEADS: bool = false;
     /// Converts a real number in this lane's unit.
     fn from_real(real: f64) -> Self;

@@ -12,7 +12,7 @@ const RGB: u8 = 7;
 const ALPHA: u8 = 8;
 
 /// All values that a draw's combiners compute.
-pub(super) struct Computed<'d> {
+pub(super) struct DrawValues<'d> {
     combiners: &'d Combiners,
     trail: Trail,
     /// The registers before the first stage.
@@ -57,10 +57,10 @@ pub(super) struct Liveness {
     pub(super) undefined: u64,
 }
 
-impl<'d> Computed<'d> {
+impl<'d> DrawValues<'d> {
     /// Runs the combiners. `zero` are the registers that are 0 in every pixel before the first stage, as bits of
     /// registers and channels.
-    pub(super) fn new(combiners: &'d Combiners, zero: u64) -> Computed<'d> {
+    pub(super) fn new(combiners: &'d Combiners, zero: u64) -> DrawValues<'d> {
         let mut trail = Trail::default();
         let mut initial = Registers::from_value(trail.input(Some(0)));
         for register in Register::ALL.iter().skip(1) {
@@ -88,7 +88,7 @@ impl<'d> Computed<'d> {
         general::load_constants(state.constants, &mut registers, &mut trail);
         let fragment = final_combiner::evaluate(state, &registers, &mut trail).fragment;
         let last = Part::close(&registers, &mut trail);
-        Computed { combiners, trail, initial, stages, last, fragment }
+        DrawValues { combiners, trail, initial, stages, last, fragment }
     }
 
     /// Returns the channels of the fragment that are 0 in every pixel, as bits R, G, B, A.

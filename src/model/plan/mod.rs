@@ -19,7 +19,7 @@ use crate::rop::{stencil, surface};
 use crate::state::*;
 use crate::texture::planned::PlannedUnit;
 use crate::texture::stage::{PlannedShader, PlannedShaderStage};
-use liveness::{Computed, Liveness};
+use liveness::{DrawValues, Liveness};
 use std::fmt;
 
 /// Options of planning.
@@ -185,7 +185,7 @@ pub struct PlannedDraw {
     /// Channels that the written bits keep, as bits R, G, B, A.
     pub written: u8,
     /// The results of constant folding, which precedes the rest of planning.
-    pub folded: Folded,
+    pub folded: DrawFacts,
 }
 
 impl PlannedDraw {
@@ -202,7 +202,7 @@ impl PlannedDraw {
 
 /// Facts about a draw that hold for every pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Folded {
+pub struct DrawFacts {
     /// Whether blending stores the source unchanged, so that the destination is not read.
     pub replaces: bool,
     /// Whether blending keeps every colour, so that none is written.
@@ -408,8 +408,8 @@ fn plan_draw(
     let idle = |test: &StencilTest| test.function == CompareFunction::Always && !stencil::writes(test);
     let has_stencil = target.depth.is_some_and(|depth| depth.format.has_stencil());
     let stencil_test = draw.stencil_test.filter(|test| has_stencil && !(options.prune && idle(test)));
-    let mut folded = Folded::default();
-    let computed = Computed::new(&draw.combiners, fold::initially_zero(draw, black));
+    let mut folded = DrawFacts::default();
+    let computed = DrawValues::new(&draw.combiners, fold::initially_zero(draw, black));
     if options.prune {
         let written = written_channels(target.format, state_mask);
         folded.zero = computed.zero_fragment();

@@ -8,7 +8,7 @@ use crate::engine::context::TriangleContext;
 use crate::engine::pixel::{DepthStencil, Fragment};
 use crate::engine::{self, PixelTrace, RenderOptions, TextureWords, TraceError, Tracer, walk};
 use crate::frame::{Frames, Surface};
-use crate::number::{Lane, Paired};
+use crate::number::{Lane, Pair};
 use crate::plan::{Plan, PlannedDraw};
 use crate::raster::ideal::Outline;
 use crate::raster::stroke::Figure;
@@ -18,7 +18,7 @@ const FEW: usize = 32;
 
 /// Pixels of the first target that are wanted.
 #[derive(Clone, Debug)]
-pub struct Wanted {
+pub struct PixelSelection {
     /// Their columns, row after row, in order.
     columns: Vec<u32>,
     /// Of each row, and of that behind the last, the number of pixels before it.
@@ -26,10 +26,10 @@ pub struct Wanted {
     width: u32,
 }
 
-impl Wanted {
+impl PixelSelection {
     /// Returns those of a target, row by row from the top, whose places are given in order.
-    pub fn new((width, height): (u32, u32), places: impl IntoIterator<Item = usize>) -> Wanted {
-        let mut wanted = Wanted { columns: Vec::new(), starts: vec![0], width };
+    pub fn new((width, height): (u32, u32), places: impl IntoIterator<Item = usize>) -> PixelSelection {
+        let mut wanted = PixelSelection { columns: Vec::new(), starts: vec![0], width };
         for place in places {
             while wanted.starts.len() * width as usize <= place {
                 wanted.starts.push(wanted.columns.len() as u32);
@@ -70,7 +70,7 @@ impl Wanted {
 }
 
 /// The pixels that are wanted; others are not drawn. `None` draws all.
-pub type Mask<'a> = Option<&'a Wanted>;
+pub type Mask<'a> = Option<&'a PixelSelection>;
 
 /// Returns the frames of a plan of the chip's rules as a renderer with shortcuts draws it.
 pub fn drawn(plan: &Plan, shortcuts: Shortcuts, options: &RenderOptions, mask: Mask<'_>) -> Frames {
@@ -94,7 +94,7 @@ pub fn render(plan: &Plan, shortcuts: Shortcuts, options: &RenderOptions, frames
     let is_read = plan.textures.iter().any(|texture| texture.image.target() == Some(0));
     let mask = mask.filter(|_| !is_read);
     let pixels = plan.targets.first().map_or(0, |target| target.width as usize * target.height as usize);
-    let are_few = |mask: &Wanted| mask.count() * FEW < pixels;
+    let are_few = |mask: &PixelSelection| mask.count() * FEW < pixels;
     if !shortcuts.need_scalar() {
         match mask.filter(|mask| are_few(mask)) {
             Some(mask) => draw_all::<i32>(plan, shortcuts, frames, Some(mask)),
@@ -103,9 +103,9 @@ pub fn render(plan: &Plan, shortcuts: Shortcuts, options: &RenderOptions, frames
             }
         }
     } else if shortcuts.lead() {
-        draw_all::<Paired<f32>>(plan, shortcuts, frames, mask);
+        draw_all::<Pair<f32>>(plan, shortcuts, frames, mask);
     } else {
-        draw_all::<Paired>(plan, shortcuts, frames, mask);
+        draw_all::<Pair>(plan, shortcuts, frames, mask);
     }
 }
 
@@ -129,9 +129,9 @@ pub fn trace(
     };
     let observer = || RealsRecorder { reals: shortcuts.reals(), ..RealsRecorder::default() };
     let Ok(end) = if shortcuts.lead() {
-        tracer.run_with::<Paired<f32>, _, _>(observer, |observer| observer.recorder.steps, keep)
+        tracer.run_with::<Pair<f32>, _, _>(observer, |observer| observer.recorder.steps, keep)
     } else {
-        tracer.run_with::<Paired, _, _>(observer, |observer| observer.recorder.steps, keep)
+        tracer.run_with::<Pair, _, _>(observer, |observer| observer.recorder.steps, keep)
     };
     let (cleared, left_out) = (tracer.cleared(), tracer.left_out());
     let (target, (x, y)) = (tracer.target().name.clone(), pixel);
@@ -201,7 +201,7 @@ mod tests {
     #[test]
     fn wanted_pixels_by_rows() {
         let places = [3, 4, 9, 21];
-        let wanted = Wanted::new((5, 6), places);
+        let wanted = PixelSelection::new((5, 6), places);
         assert_eq!((wanted.count(), wanted.places().collect::<Vec<_>>()), (4, places.to_vec()));
         assert_eq!(wanted.of(&(0..30).collect::<Vec<_>>()), places);
         let within = |row, first, end| wanted.within(row, (first, end));

@@ -11,7 +11,7 @@ mod state;
 mod texels;
 
 pub use depths::shown_depth;
-pub use draw::{Mask, Wanted, drawn, render, trace};
+pub use draw::{Mask, PixelSelection, drawn, render, trace};
 pub use reals::Reals;
 
 use crate::plan::Plan;

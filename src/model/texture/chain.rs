@@ -1,7 +1,7 @@
 //! TSH-1 to TSH-10: runs the stages of a texture shader in order, for one pixel.
 
-use super::coordinates::{Coordinates, Interpolated, quad_pixels, quad_samples, real_coordinate};
-use super::dependent::{Dependent, Moved, QuadTargets, Target};
+use super::coordinates::{Coordinates, VertexCoordinates, quad_pixels, quad_samples, real_coordinate};
+use super::dependent::{Dependent, Displacement, QuadTargets, Target};
 use super::filter::nearest;
 use super::planned::{Image, PlannedUnit};
 use super::real::{self, RealColor, RealTarget};
@@ -149,7 +149,7 @@ impl<L: Lane> Chain<'_, L> {
             return (black(), false);
         };
         let (vertices, perspective) = (self.vertices, self.perspective);
-        let place = Interpolated { unit, coordinates, at: at.sample, pixel: at.pixel, vertices, perspective };
+        let place = VertexCoordinates { unit, coordinates, at: at.sample, pixel: at.pixel, vertices, perspective };
         unit::sample::<L, O>(unit, &self.textures[unit.state.texture], &place, observer)
     }
 
@@ -299,7 +299,7 @@ impl<L: Lane> Chain<'_, L> {
                     let [s, t, ..] = self.real_coordinates(index, at.sample);
                     RealTarget::moved([s, t], real::offset(matrix, &color.real))
                 });
-                (Target::Moved(Moved { st, at: at.sample, vertices: self.vertices, matrix, blue_green }), own)
+                (Target::Moved(Displacement { st, at: at.sample, vertices: self.vertices, matrix, blue_green }), own)
             }
             // DotProductCube and DotReflectDiffuse.
             _ => {

@@ -19,7 +19,7 @@ const DITHER_6: [[i32; 4]; 4] = [[1, 3, 2, 0], [2, 0, 3, 1], [3, 1, 0, 2], [0, 2
 
 /// A decoded texel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Decoded {
+pub struct DecodedTexel {
     /// R, G, B, A bytes.
     pub bytes: [u8; 4],
     /// R, G, B, A as the real numbers in 0..1 that the format defines, each a numerator and a denominator: colours are
@@ -32,7 +32,7 @@ pub struct Decoded {
 /// `block` has two little-endian words for DXT1 (the two colours with the first in the low half, then the indices), and
 /// four for DXT3 and DXT5 (two of alpha before those). If `dithered` is set, DXT1 follows TEX-3 (nv2a), otherwise TEX-4
 /// (nv10). Returns zero for formats that have no blocks.
-pub fn decode(format: TextureFormat, dithered: bool, block: &[u32], x: u32, y: u32) -> Decoded {
+pub fn decode(format: TextureFormat, dithered: bool, block: &[u32], x: u32, y: u32) -> DecodedTexel {
     let texel = 4 * (y & 3) + (x & 3);
     match (format, block) {
         (TextureFormat::Dxt1, &[colors, indices]) => {
@@ -80,7 +80,7 @@ pub(crate) fn decode_undithered(format: TextureFormat, block: &[u32], (x, y): (u
 }
 
 /// Transparent black, for formats without blocks and for the transparent index of DXT1.
-const NOTHING: Decoded = Decoded { bytes: [0; 4], ideal: [(0, 1); 4] };
+const NOTHING: DecodedTexel = DecodedTexel { bytes: [0; 4], ideal: [(0, 1); 4] };
 
 /// How the colour of a texel is mixed from the two colours of the block: (a first + b second) / (a + b).
 #[derive(Clone, Copy)]
@@ -135,9 +135,9 @@ impl Mix {
 
     /// Returns a texel of these bytes with alpha 255, and the mixture as real numbers.
     #[inline]
-    fn opaque(&self, [r, g, b]: [i32; 3]) -> Decoded {
+    fn opaque(&self, [r, g, b]: [i32; 3]) -> DecodedTexel {
         let ideal = |n: usize| (self.a * self.first[n] + self.b * self.second[n], (self.a + self.b) * MAX_CHANNELS[n]);
-        Decoded { bytes: [r as u8, g as u8, b as u8, 255], ideal: [ideal(0), ideal(1), ideal(2), (1, 1)] }
+        DecodedTexel { bytes: [r as u8, g as u8, b as u8, 255], ideal: [ideal(0), ideal(1), ideal(2), (1, 1)] }
     }
 }
 
@@ -206,7 +206,7 @@ mod tests {
     use super::*;
 
     /// Decodes one texel of a DXT5 block with the given alpha.
-    fn dxt5_alpha(first: u32, second: u32, code: u64, texel: u32) -> Decoded {
+    fn dxt5_alpha(first: u32, second: u32, code: u64, texel: u32) -> DecodedTexel {
         let bits = code << (16 + 3 * texel) | u64::from(second) << 8 | u64::from(first);
         decode(TextureFormat::Dxt5, true, &[bits as u32, (bits >> 32) as u32, 0, 0], texel & 3, texel >> 2)
     }
@@ -373,7 +373,7 @@ mod tests {
         // Lowest and highest byte - ideal of red and green, as numerators over a common multiple of all denominators.
         const WHOLE: i64 = 31 * 63 * 6;
         let mut extremes = [[[0_i64; 2]; 2]; 3];
-        let mut note = |rule: usize, channel: usize, decoded: &Decoded| {
+        let mut note = |rule: usize, channel: usize, decoded: &DecodedTexel| {
             let (numerator, denominator) = decoded.ideal[channel];
             let ideal = 255 * i64::from(numerator) * (WHOLE / i64::from(denominator));
             let error = i64::from(decoded.bytes[channel]) * WHOLE - ideal;

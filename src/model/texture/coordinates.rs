@@ -1,6 +1,6 @@
 //! Texture coordinates: where a unit samples on each level of each kind of texture, at a pixel and at its quad.
 
-use super::cube::{Face, Signed, major_axis};
+use super::cube::{Face, SignedAxis, major_axis};
 use super::lod::Quad;
 use super::planned::PlannedUnit;
 use super::report::Report;
@@ -82,7 +82,7 @@ pub(crate) fn face_of(direction: [Binary; 3]) -> Face {
 
 /// Returns sc, tc and |ma| of a direction on a face.
 pub(crate) fn on_face(direction: [Binary; 3], face: Face) -> [Binary; 3] {
-    let signed = |Signed { axis, negative }| if negative { direction[axis].negated() } else { direction[axis] };
+    let signed = |SignedAxis { axis, negative }| if negative { direction[axis].negated() } else { direction[axis] };
     face.components().map(signed)
 }
 
@@ -150,7 +150,7 @@ pub trait SampleCoordinates {
 
 /// Coordinates that are interpolated from the vertices.
 #[derive(Clone, Copy, Debug)]
-pub struct Interpolated<'a> {
+pub struct VertexCoordinates<'a> {
     /// The unit that samples.
     pub unit: &'a PlannedUnit,
     /// The coordinates that were set up for the triangle.
@@ -176,7 +176,7 @@ pub(crate) fn quad_pixels((i, j): (i64, i64)) -> [(i64, i64); 3] {
     [(i, j), (i + 1, j), (i, j + 1)]
 }
 
-impl Interpolated<'_> {
+impl VertexCoordinates<'_> {
     fn face_at(direction: &[Linear<Binary>; 3], at: &Sample<'_>) -> Face {
         face_of([at.value(&direction[0]), at.value(&direction[1]), at.value(&direction[2])])
     }
@@ -258,7 +258,7 @@ pub(crate) fn real_direction(direction: [f64; 3], face: Option<Face>) -> Real {
     Real { face, st }
 }
 
-impl SampleCoordinates for Interpolated<'_> {
+impl SampleCoordinates for VertexCoordinates<'_> {
     fn face(&self) -> Face {
         match self.coordinates {
             Coordinates::Direction(direction) => Self::face_at(direction, self.at),
@@ -422,7 +422,7 @@ impl SampleCoordinates for Interpolated<'_> {
     }
 }
 
-impl Interpolated<'_> {
+impl VertexCoordinates<'_> {
     /// Returns what a sprite's coordinate is computed from.
     fn sprite_inputs(&self, of: ([i64; 2], u16), pixel: (i64, i64), axis: usize, size: Operand) -> Vec<Operand> {
         let at = plain(["point.x", "point.y"][axis], of.0[axis]);

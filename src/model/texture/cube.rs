@@ -23,7 +23,7 @@ named! {
 
 /// A component of a direction, which may be negated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Signed {
+pub struct SignedAxis {
     /// Axis of the component: 0 for x, 1 for y, 2 for z.
     pub axis: usize,
     /// Whether the component is negated.
@@ -60,8 +60,8 @@ impl Face {
     }
 
     /// Returns the components sc, tc and |ma| of the face, so that u = (sc/|ma| + 1)/2 and v = (tc/|ma| + 1)/2.
-    pub fn components(self) -> [Signed; 3] {
-        let of = |(axis, negative)| Signed { axis, negative };
+    pub fn components(self) -> [SignedAxis; 3] {
+        let of = |(axis, negative)| SignedAxis { axis, negative };
         let (x, y, z) = ((0, false), (1, false), (2, false));
         let (minus_x, minus_y, minus_z) = ((0, true), (1, true), (2, true));
         match self {

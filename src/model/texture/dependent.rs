@@ -18,7 +18,7 @@ use crate::trace::{Observer, Rule};
 #[derive(Clone, Copy, Debug)]
 pub enum Target<'a> {
     /// Interpolated coordinates that are displaced (TSH-7).
-    Moved(Moved<'a>),
+    Moved(Displacement<'a>),
     /// Two bytes of a colour (TSH-6).
     Bytes([u8; 2], DependentScale),
     /// Two results of the dot unit, where 1.0 spans the whole image, or texels of a rectangle (TSH-4).
@@ -29,7 +29,7 @@ pub enum Target<'a> {
 
 /// TSH-7: s and t, and their displacement.
 #[derive(Clone, Copy, Debug)]
-pub struct Moved<'a> {
+pub struct Displacement<'a> {
     /// s and t of the vertices. q has no effect.
     pub st: &'a [Linear<Binary>; 2],
     /// The sample point of the pixel.
@@ -47,7 +47,7 @@ fn direction(vector: [f32; 3]) -> [Binary; 3] {
     shader::direction(vector.map(|component| component.to_bits().into()))
 }
 
-impl Moved<'_> {
+impl Displacement<'_> {
     /// Returns the entries of the matrix that multiply blue and green: along u, then along v.
     pub(crate) fn entries(&self) -> [[f32; 2]; 2] {
         let [m0, m1, m2, m3] = self.matrix;

@@ -225,7 +225,7 @@ pub(crate) fn has_no_high_half(format: TextureFormat, texel: &Texel) -> bool {
     format == TextureFormat::Y16 && texel.at.is_some()
 }
 
-fn compressed_lanes<L: Lane>(decoded: &compressed::Decoded, signed: &[bool; 4]) -> [L; 4] {
+fn compressed_lanes<L: Lane>(decoded: &compressed::DecodedTexel, signed: &[bool; 4]) -> [L; 4] {
     std::array::from_fn(|n| {
         let byte = decoded.bytes[n];
         if signed[n] {

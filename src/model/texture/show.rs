@@ -6,7 +6,7 @@ use crate::state::{BORDER_TEXELS, Level, Texels, TextureFormat};
 
 /// The picture of a level of a face, including border texels.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Shown {
+pub struct LevelPicture {
     /// Width in pixels.
     pub width: u32,
     /// Height in pixels.
@@ -25,7 +25,7 @@ pub fn level(
     dithered: bool,
     face: u32,
     level: u32,
-) -> Option<Shown> {
+) -> Option<LevelPicture> {
     let (chain, face_words) = Level::chain(format, texels.width, texels.height, texels.levels, texels.border);
     let place = chain.get(level as usize)?;
     let beyond = if texels.border { 2 * BORDER_TEXELS } else { 0 };
@@ -47,7 +47,7 @@ pub fn level(
     } else {
         words.iter().map(|word| expand(format, *word)).collect()
     };
-    Some(Shown { width, height, pixels })
+    Some(LevelPicture { width, height, pixels })
 }
 
 #[cfg(test)]

@@ -47,7 +47,7 @@ impl Vocabulary {
 
 /// A program read from pasted text, with notes about what was skipped.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pasted<P> {
+pub struct PastedProgram<P> {
     /// The program that was read.
     pub program: P,
     /// Notes about the rest of the text; each is a warning.
@@ -103,8 +103,8 @@ impl<'t> Reader<'t> {
     }
 
     /// Returns the program, or the findings if there are any.
-    pub(super) fn finish<P>(self, program: P) -> Result<Pasted<P>, Vec<Diagnostic>> {
-        if self.findings.is_empty() { Ok(Pasted { program, asides: self.asides }) } else { Err(self.findings) }
+    pub(super) fn finish<P>(self, program: P) -> Result<PastedProgram<P>, Vec<Diagnostic>> {
+        if self.findings.is_empty() { Ok(PastedProgram { program, asides: self.asides }) } else { Err(self.findings) }
     }
 
     /// Reads up to the next statement; `None` at the end of the text.

@@ -8,7 +8,7 @@ use ninebit::state::{CombinerInput, Component, InputMapping, Register};
 
 /// What an earlier stage has to do so that an instruction fits one stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Need {
+pub(super) enum Preparation {
     /// Clamp a register to 0..1: its `_sat` was left to its readers, and this one reads the negative.
     Limit(Register),
     /// Load a constant that no single input can read into a register.
@@ -77,7 +77,7 @@ impl Factor {
 }
 
 /// Returns the two inputs of a product, and whether the product is at least 0.
-pub(super) fn product(a: Factor, b: Factor) -> Result<([CombinerInput; 2], bool), Need> {
+pub(super) fn product(a: Factor, b: Factor) -> Result<([CombinerInput; 2], bool), Preparation> {
     if a.negate == b.negate {
         return Ok(([a.input, b.input], a.positive && b.positive));
     }
@@ -93,7 +93,7 @@ pub(super) fn product(a: Factor, b: Factor) -> Result<([CombinerInput; 2], bool)
     match (order(&a), order(&b)) {
         (Some(first), second) if second.is_none_or(|second| first <= second) => Ok(([negative(a), b.input], false)),
         (_, Some(_)) => Ok(([a.input, negative(b)], false)),
-        _ => Err(a.limit.or(b.limit).map_or(Need::Refused, Need::Limit)),
+        _ => Err(a.limit.or(b.limit).map_or(Preparation::Refused, Preparation::Limit)),
     }
 }
 
@@ -106,7 +106,7 @@ impl Lowering {
         unsigned: bool,
         part: Part,
         pool: &mut Pool,
-    ) -> Result<Factor, Need> {
+    ) -> Result<Factor, Preparation> {
         let component = match (source.selector, alpha) {
             (Selector::Alpha, _) | (Selector::All, true) => Component::Alpha,
             (Selector::Blue, true) => Component::Blue,
@@ -154,7 +154,7 @@ impl Lowering {
         unsigned: bool,
         part: Part,
         pool: &mut Pool,
-    ) -> Result<Factor, Need> {
+    ) -> Result<Factor, Preparation> {
         let index = source.register.index;
         let [r, g, b, a] = self.constants.get(usize::from(index)).copied().unwrap_or_default();
         let channels: &[i16] = match component {
@@ -170,7 +170,7 @@ impl Lowering {
             Part::Negative => true,
         };
         if part == Part::Whole && signed && !negative && channels.iter().any(|c| *c < 0) {
-            return Err(Need::Constant(index));
+            return Err(Preparation::Constant(index));
         }
         let byte = |c: i16| if negative { -c } else { c }.clamp(0, 255) as u8;
         let found = match (component, alpha) {
@@ -179,7 +179,7 @@ impl Lowering {
             (Component::Alpha, true) => pool.alpha(byte(a)),
             (Component::Alpha, false) => pool.scalar(byte(a)),
         };
-        let (register, component) = found.ok_or(Need::Constant(index))?;
+        let (register, component) = found.ok_or(Preparation::Constant(index))?;
         let factor = match source.modifier {
             Modifier::Plain if unsigned => Factor::unsigned(register, component, InputMapping::UnsignedIdentity),
             modifier @ Modifier::Plain => Factor { positive: true, ..modified(register, component, modifier) },

@@ -141,7 +141,7 @@ pub(super) struct Lowering {
 }
 
 /// A portion, and whether what it writes is at least 0.
-pub(super) type Written = (Portion, bool);
+pub(super) type StagePortion = (Portion, bool);
 
 impl Lowering {
     pub(super) fn value(&self, register: Register) -> Value {
@@ -187,7 +187,7 @@ impl Lowering {
         self.no_register(&span);
     }
 
-    pub(super) fn push(&mut self, rgb: Written, alpha: Written, pool: Pool, origin: StageOrigin, span: Span) {
+    pub(super) fn push(&mut self, rgb: StagePortion, alpha: StagePortion, pool: Pool, origin: StageOrigin, span: Span) {
         for ((portion, positive), half) in [(&rgb, 0), (&alpha, 1)] {
             for output in [portion.ab_output, portion.cd_output, portion.sum_output] {
                 let value = &mut self.values[output as usize];

@@ -356,7 +356,7 @@ impl PixelShader {
 
 /// A shader that has been read and checked.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Parsed {
+pub struct CheckedShader {
     /// The shader that was read.
     pub program: PixelShader,
     /// Findings about what is probably unintended.
@@ -367,7 +367,7 @@ pub struct Parsed {
 ///
 /// # Errors
 /// All findings, with places in `text`: at most 32 about the notation, or 64 about the rules.
-pub fn parse(text: &str) -> Result<Parsed, Vec<Diagnostic>> {
+pub fn parse(text: &str) -> Result<CheckedShader, Vec<Diagnostic>> {
     let (program, mut findings) = parser::read(text);
     if findings.iter().all(|finding| finding.severity != Severity::Error) {
         findings.extend(check::check(&program));
@@ -375,5 +375,5 @@ pub fn parse(text: &str) -> Result<Parsed, Vec<Diagnostic>> {
     if findings.iter().any(|finding| finding.severity == Severity::Error) {
         return Err(findings);
     }
-    Ok(Parsed { program, warnings: findings })
+    Ok(CheckedShader { program, warnings: findings })
 }

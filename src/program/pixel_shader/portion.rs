@@ -1,15 +1,15 @@
 //! Makes the portions of one general stage: the inputs of each instruction, and its output.
 
 use super::constants::Pool;
-use super::factor::{Factor, Need, Part, product};
-use super::lower::{Lowering, Written};
+use super::factor::{Factor, Part, Preparation, product};
+use super::lower::{Lowering, StagePortion};
 use super::scratch::hardware;
 use super::{Arithmetic, Mask, Modifier, Operation, Target};
 use ninebit::state::{Component, InputMapping, Portion, Profile, Register};
 
 impl Lowering {
     /// Makes the portions of an instruction or pair.
-    pub(super) fn stage(&self, slot: &[Arithmetic], pool: &mut Pool) -> Result<[Written; 2], Need> {
+    pub(super) fn stage(&self, slot: &[Arithmetic], pool: &mut Pool) -> Result<[StagePortion; 2], Preparation> {
         let mut halves = [Component::Rgb, Component::Alpha].map(|component| (Portion::idle(component), true));
         // Alpha comes first: colours can use the alphas of constants that it leaves.
         for alpha in [true, false] {
@@ -26,7 +26,7 @@ impl Lowering {
             if mask == Mask::Color && self.value(register).alpha_is_blue {
                 let alpha = &mut halves[1];
                 if alpha.0 != Portion::idle(Component::Alpha) {
-                    return Err(Need::Alpha(register));
+                    return Err(Preparation::Alpha(register));
                 }
                 *alpha = self.copied_alpha(register);
             }
@@ -40,14 +40,14 @@ impl Lowering {
         n: usize,
         alpha: bool,
         pool: &mut Pool,
-    ) -> Result<Written, Need> {
+    ) -> Result<StagePortion, Preparation> {
         let Arithmetic { operation, sources, target, scale, paired, .. } = instruction;
         let component = if alpha { Component::Alpha } else { Component::Rgb };
-        let output = hardware(target.value.register).ok_or(Need::Refused)?;
+        let output = hardware(target.value.register).ok_or(Preparation::Refused)?;
         let mut portion = Portion { scale: *scale, ..Portion::idle(component) };
         let unit = Factor::one(alpha);
         let mut read = |n: usize, part: Part| {
-            let source = &sources.get(n).ok_or(Need::Refused)?.value;
+            let source = &sources.get(n).ok_or(Preparation::Refused)?.value;
             self.factor(source, alpha, false, part, pool)
         };
         // A colour `cnd` behind `+` does not compare.
@@ -82,7 +82,7 @@ impl Lowering {
             Operation::Dp3 => (product(read(0, Part::Whole)?, read(1, Part::Whole)?)?, None),
             Operation::Cnd if selects => {
                 if self.value(Register::Spare0).alpha_is_blue {
-                    return Err(Need::Alpha(Register::Spare0));
+                    return Err(Preparation::Alpha(Register::Spare0));
                 }
                 // The mux takes CD where the condition holds (CMB-10).
                 (product(read(2, Part::Whole)?, unit)?, Some(product(read(1, Part::Whole)?, unit)?))
@@ -107,15 +107,15 @@ impl Lowering {
     }
 
     /// Returns the first source of `lrp`, which has to be readable both as it is and as its complement.
-    fn weight(&self, instruction: &Arithmetic, n: usize, alpha: bool, pool: &mut Pool) -> Result<Factor, Need> {
+    fn weight(&self, instruction: &Arithmetic, n: usize, alpha: bool, pool: &mut Pool) -> Result<Factor, Preparation> {
         if let Some(register) = self.held.factors.get(n).copied().flatten() {
             // It has been computed: each channel reads its own.
             let component = if alpha { Component::Alpha } else { Component::Rgb };
             return Ok(Factor::unsigned(register, component, InputMapping::UnsignedIdentity));
         }
-        let source = &instruction.sources.first().ok_or(Need::Refused)?.value;
+        let source = &instruction.sources.first().ok_or(Preparation::Refused)?.value;
         if source.negate || matches!(source.modifier, Modifier::Bias | Modifier::SignedScale) {
-            return Err(Need::Factor(n));
+            return Err(Preparation::Factor(n));
         }
         self.factor(source, alpha, true, Part::Whole, pool)
     }

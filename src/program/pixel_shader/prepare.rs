@@ -1,8 +1,8 @@
 //! Adds the stages that have to run before an instruction so that it fits one stage.
 
 use super::constants::Pool;
-use super::factor::Need;
-use super::lower::{Lowering, Written};
+use super::factor::Preparation;
+use super::lower::{Lowering, StagePortion};
 use super::scratch::{Set, free};
 use super::{Arithmetic, Operation, print};
 use crate::Span;
@@ -12,18 +12,18 @@ use ninebit::state::{CombinerInput, Component, InputMapping, Portion, Profile, R
 
 impl Lowering {
     /// Adds a stage before the instruction. Returns `None` after recording that nothing helps.
-    pub(super) fn prepare(&mut self, need: Need, slot: &[Arithmetic], live: Set, span: &Span) -> Option<()> {
+    pub(super) fn prepare(&mut self, need: Preparation, slot: &[Arithmetic], live: Set, span: &Span) -> Option<()> {
         let idle = |component| (Portion::idle(component), true);
         let mut pool = if self.profile == Profile::Nv10 { self.pool } else { Pool::default() };
         let ([rgb, alpha], what) = match need {
-            Need::Limit(register) => (
+            Preparation::Limit(register) => (
                 [self.limited(register, false), self.limited(register, true)],
                 format!("{} limited to 0..1", name(register)),
             ),
-            Need::Alpha(register) => {
+            Preparation::Alpha(register) => {
                 ([idle(Component::Rgb), self.copied_alpha(register)], format!("the alpha of {}", name(register)))
             }
-            Need::Constant(index) => {
+            Preparation::Constant(index) => {
                 let register = self.scratch(live, span)?;
                 let constant = self.constants.get(usize::from(index)).copied().unwrap_or_default();
                 let halves = [false, true].map(|alpha| self.loaded(constant, alpha, register, &mut pool));
@@ -36,7 +36,7 @@ impl Lowering {
                 };
                 ([rgb, alpha], format!("c{index}"))
             }
-            Need::Factor(n) => {
+            Preparation::Factor(n) => {
                 let register = self.scratch(live, span)?;
                 let instruction = slot.get(n)?;
                 let source = instruction.sources.first()?;
@@ -68,7 +68,7 @@ impl Lowering {
                 }
                 (halves, "the first source".to_owned())
             }
-            Need::Refused => {
+            Preparation::Refused => {
                 let message = "this instruction has no form in the register combiners";
                 let help = "write it with other modifiers, or in two instructions";
                 self.findings.push(finding("NB0379", span.clone(), message, "no form", help).rule("CMB-12"));
@@ -85,7 +85,7 @@ impl Lowering {
     }
 
     /// Makes a portion that loads a constant with both signs, as the difference of two constants.
-    fn loaded(&self, constant: [i16; 4], alpha: bool, register: Register, pool: &mut Pool) -> Option<Written> {
+    fn loaded(&self, constant: [i16; 4], alpha: bool, register: Register, pool: &mut Pool) -> Option<StagePortion> {
         let component = if alpha { Component::Alpha } else { Component::Rgb };
         let [r, g, b, a] = constant;
         let mut portion = Portion::idle(component);
@@ -121,7 +121,7 @@ impl Lowering {
     }
 
     /// Makes a portion that replaces x by max(0, x), if that is still to be done.
-    fn limited(&self, register: Register, alpha: bool) -> Written {
+    fn limited(&self, register: Register, alpha: bool) -> StagePortion {
         let value = self.value(register);
         if alpha && value.alpha_is_blue {
             return self.copied_alpha(register);
@@ -134,7 +134,7 @@ impl Lowering {
     }
 
     /// Makes a portion that copies blue to alpha, unchanged.
-    pub(super) fn copied_alpha(&self, register: Register) -> Written {
+    pub(super) fn copied_alpha(&self, register: Register) -> StagePortion {
         let half = self.value(register).halves[1];
         let mapping = if half.limit { InputMapping::UnsignedIdentity } else { InputMapping::SignedIdentity };
         (rewritten(register, Component::Blue, mapping, true), half.limit || !half.negative)

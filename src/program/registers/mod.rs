@@ -16,7 +16,7 @@ pub use code::{OPERATIONS, component, refusal, register_code, stored};
 pub use describe::{Description, describe};
 pub(crate) use program::word_of;
 pub use program::{color_of, color_word, decode, encode};
-pub use text::{Written, read};
+pub use text::{WordText, read};
 
 named! {
     /// A register of the combiners, or an array of registers.

@@ -11,7 +11,7 @@ use crate::lexer::{Kind, Language};
 
 /// Words, with their places in a text.
 #[derive(Clone, Debug)]
-pub struct Written {
+pub struct WordText {
     /// The words that were read.
     pub words: RegisterWords,
     places: Vec<(Word, usize, Span)>,
@@ -19,10 +19,10 @@ pub struct Written {
     opening: Span,
 }
 
-impl Written {
+impl WordText {
     /// Makes words that are all 0. `opening` is the place of words that are not written.
-    pub fn new(chip: Profile, opening: Span) -> Written {
-        Written { words: RegisterWords::new(chip), places: Vec::new(), opening }
+    pub fn new(chip: Profile, opening: Span) -> WordText {
+        WordText { words: RegisterWords::new(chip), places: Vec::new(), opening }
     }
 
     /// Sets a word that is written at `span`.
@@ -129,8 +129,8 @@ impl Piece<'_> {
 ///
 /// # Errors
 /// Findings about whatever is not a statement, name, method or number.
-pub fn read(text: &str, chip: Profile) -> Result<Written, Vec<Diagnostic>> {
-    let mut written = Written::new(chip, 0..text.find('\n').unwrap_or(text.len()));
+pub fn read(text: &str, chip: Profile) -> Result<WordText, Vec<Diagnostic>> {
+    let mut written = WordText::new(chip, 0..text.find('\n').unwrap_or(text.len()));
     let mut findings = Vec::new();
     let mut cursor = Cursor::new(text, Language::WORDS);
     while !cursor.is_done() {
@@ -163,7 +163,7 @@ pub fn read(text: &str, chip: Profile) -> Result<Written, Vec<Diagnostic>> {
 }
 
 /// Processes a statement.
-fn finish(statement: &[Piece<'_>], written: &mut Written, findings: &mut Vec<Diagnostic>) {
+fn finish(statement: &[Piece<'_>], written: &mut WordText, findings: &mut Vec<Diagnostic>) {
     let Some((name, rest)) = statement.split_first() else { return };
     let chip = written.words.chip;
     let (first, mut values) = match name.number() {

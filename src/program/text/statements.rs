@@ -14,7 +14,7 @@ use ninebit::state::{Combiners, GeneralStage, MuxSelect, Portion};
 const MAX_FINDINGS: usize = 64;
 
 /// A constant with its place, if it is written.
-type Written = Option<([u8; 4], Span)>;
+type ConstantSlot = Option<([u8; 4], Span)>;
 
 /// Statements outside stages.
 const STATEMENTS: &[&str] =
@@ -26,8 +26,8 @@ impl Parser<'_> {
         if !self.findings.is_empty() {
             return Err(self.findings);
         }
-        let mut shared: [Written; 2] = [None, None];
-        let mut stages: Vec<(GeneralStage, [Written; 2])> = Vec::new();
+        let mut shared: [ConstantSlot; 2] = [None, None];
+        let mut stages: Vec<(GeneralStage, [ConstantSlot; 2])> = Vec::new();
         let mut mux: Option<Span> = None;
         let mut last = Final::default();
         while self.cursor.kind().is_some() && self.findings.len() < MAX_FINDINGS {
@@ -75,12 +75,12 @@ impl Parser<'_> {
     }
 
     /// Reads `{ const0 = ...; rgb { ... } alpha { ... } }`.
-    fn stage(&mut self, stages: &mut Vec<(GeneralStage, [Written; 2])>) -> Read<()> {
+    fn stage(&mut self, stages: &mut Vec<(GeneralStage, [ConstantSlot; 2])>) -> Read<()> {
         let opening = self.cursor.span();
         self.cursor.advance();
         let index = stages.len();
         self.places.set(Place::Stage(index), opening.clone());
-        let mut own: [Written; 2] = [None, None];
+        let mut own: [ConstantSlot; 2] = [None, None];
         let mut portions: [Option<(Portion, Span)>; 2] = [None, None];
         self.body(opening, |parser| match parser.cursor.word() {
             "const0" => parser.constant(&mut own[0]),
@@ -131,7 +131,7 @@ impl Parser<'_> {
     }
 
     /// Reads `const0 = (1.0, 0.5, 0.0, 1.0);` or `const0 = bytes(255, 128, 0, 255);`.
-    fn constant(&mut self, slot: &mut Written) -> Read<()> {
+    fn constant(&mut self, slot: &mut ConstantSlot) -> Read<()> {
         let name = self.cursor.span();
         self.cursor.advance();
         self.sign('=')?;

@@ -56,11 +56,11 @@ pub(super) fn unit(
     // The EXT functions leave ALPHA_SCALE to a separate alpha.
     let alpha_scale = if function == Function::Dot3RgbaExt { Scale::One } else { unit.alpha.scale };
     let origin = StageOrigin { rgb: origin(index, unit, false), alpha: origin(index, unit, true) };
-    let mut rgb = Combined::from_mode(unit.mode, function, walk.all(&unit.rgb, false), rgb_scale);
+    let mut rgb = Combination::from_mode(unit.mode, function, walk.all(&unit.rgb, false), rgb_scale);
     let mut alpha = if function.writes_alpha() {
-        Combined { first: Equation::copy(Argument::ZERO), then: None }
+        Combination { first: Equation::copy(Argument::ZERO), then: None }
     } else {
-        Combined::from_mode(unit.mode, unit.alpha.function.value, walk.all(&unit.alpha, true), alpha_scale)
+        Combination::from_mode(unit.mode, unit.alpha.function.value, walk.all(&unit.alpha, true), alpha_scale)
     };
     let separate = function.writes_alpha() && rgb_scale != alpha_scale;
     if separate {
@@ -81,20 +81,20 @@ pub(super) fn unit(
 }
 
 /// A function in terms of the combiners: an equation, and perhaps a scale that needs a stage of its own.
-struct Combined {
+struct Combination {
     first: Equation,
     then: Option<Scale>,
 }
 
-impl Combined {
-    fn from_mode(mode: Mode, function: Function, [a0, a1, a2, a3]: [Argument; 4], scale: Scale) -> Combined {
-        let one = |first| Combined { first, then: None };
+impl Combination {
+    fn from_mode(mode: Mode, function: Function, [a0, a1, a2, a3]: [Argument; 4], scale: Scale) -> Combination {
+        let one = |first| Combination { first, then: None };
         if mode == Mode::Combine4 {
             let sum = Equation::products([a0, a1], [a2, a3]);
             return match (function, scale) {
                 // A bias cannot be combined with scale 4, so scale 2 is applied twice.
                 (Function::AddSigned, Scale::Four) => {
-                    Combined { first: sum.biased().scaled(Scale::Two), then: Some(Scale::Two) }
+                    Combination { first: sum.biased().scaled(Scale::Two), then: Some(Scale::Two) }
                 }
                 (Function::AddSigned, scale) => one(sum.biased().scaled(scale)),
                 (_, scale) => one(sum.scaled(scale)),

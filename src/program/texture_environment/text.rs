@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::calls::opengl::{self, bare, capability, choose, color, is_vector, numbered, table, whole};
-use crate::calls::{Pasted, Reader, Statement, Value, Vocabulary, wrong_kind};
+use crate::calls::{PastedProgram, Reader, Statement, Value, Vocabulary, wrong_kind};
 
 /// What is read of OpenGL for the texture environment.
 static ENVIRONMENT: Vocabulary = Vocabulary {
@@ -19,7 +19,7 @@ static ENVIRONMENT: Vocabulary = Vocabulary {
 ///
 /// # Errors
 /// Findings about whatever is not a statement, or sets something that the API does not have.
-pub fn parse(text: &str) -> Result<Pasted<TextureEnvironment>, Vec<Diagnostic>> {
+pub fn parse(text: &str) -> Result<PastedProgram<TextureEnvironment>, Vec<Diagnostic>> {
     let reader = Reader::new(text, &ENVIRONMENT);
     let mut parser = Parser { reader, program: TextureEnvironment::default(), unit: 0 };
     while let Some(statement) = parser.reader.next() {

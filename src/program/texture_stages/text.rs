@@ -4,7 +4,7 @@ mod draw_state;
 mod value;
 
 use super::*;
-use crate::calls::{self, Pasted, Reader, Statement, Value, Vocabulary, out_of_range};
+use crate::calls::{self, PastedProgram, Reader, Statement, Value, Vocabulary, out_of_range};
 use crate::finding::finding;
 use draw_state::{DrawStates, OTHER_STATES};
 use ninebit::diagnostic::Diagnostic;
@@ -44,7 +44,7 @@ static DIRECT3D: Vocabulary = Vocabulary {
 ///
 /// # Errors
 /// Findings about whatever is not a statement, or sets something that the API does not have.
-pub fn parse(text: &str) -> Result<Pasted<TextureStages>, Vec<Diagnostic>> {
+pub fn parse(text: &str) -> Result<PastedProgram<TextureStages>, Vec<Diagnostic>> {
     let reader = Reader::new(text, &DIRECT3D);
     let mut parser = Parser { reader, program: TextureStages::default(), draw: DrawStates::default() };
     while let Some(statement) = parser.reader.next() {

@@ -1,14 +1,14 @@
 //! Checks what the language allows, as far as the text alone tells.
 
 use super::print::{letters, name};
-use super::{InstructionPlaces, Written, flow};
+use super::{InstructionPlaces, ShaderText, flow};
 use crate::Span;
 use crate::finding::{finding, warning};
 use ninebit::diagnostic::Diagnostic;
 use ninebit::vertex::shader::*;
 
 /// Checks each instruction by itself.
-pub(super) fn instructions(written: &Written) -> Vec<Diagnostic> {
+pub(super) fn instructions(written: &ShaderText) -> Vec<Diagnostic> {
     let mut findings = Vec::new();
     for (instruction, places) in written.shader.instructions.iter().zip(&written.places) {
         masks(instruction, places, &mut findings);
@@ -20,7 +20,7 @@ pub(super) fn instructions(written: &Written) -> Vec<Diagnostic> {
 }
 
 /// Checks a program that could be read. Returns errors and warnings in the order of the text.
-pub(super) fn check(written: &Written) -> Vec<Diagnostic> {
+pub(super) fn check(written: &ShaderText) -> Vec<Diagnostic> {
     let mut findings = instructions(written);
     let (mut slots, mut addressed) = (0, false);
     for (instruction, places) in written.shader.instructions.iter().zip(&written.places) {
@@ -162,7 +162,7 @@ fn scalar(instruction: &Instruction, places: &InstructionPlaces, findings: &mut 
 }
 
 /// Warns of a constant that is a row of a matrix in one place and something else in another.
-fn overlaps(written: &Written, findings: &mut Vec<Diagnostic>) {
+fn overlaps(written: &ShaderText, findings: &mut Vec<Diagnostic>) {
     let shader = &written.shader;
     // For each constant, the first row of the matrix that it belongs to, and the place where that matrix is read.
     let mut row_of: Vec<Option<(usize, Span)>> = vec![None; CONSTANTS];

@@ -1,6 +1,6 @@
 //! Finds registers that are read before they are written, and those that are read at all.
 
-use super::Written;
+use super::ShaderText;
 use super::print::letters;
 use crate::Span;
 use crate::finding::finding;
@@ -43,7 +43,7 @@ fn temporaries(instruction: &Instruction, needed: u8) -> Vec<(usize, u8, usize)>
 }
 
 /// Finds temporaries that are read before they are written, where the result matters.
-pub(super) fn unwritten(written: &Written, findings: &mut Vec<Diagnostic>) {
+pub(super) fn unwritten(written: &ShaderText, findings: &mut Vec<Diagnostic>) {
     let mut known = [0_u8; TEMPORARIES];
     let needed = needed(&written.shader.instructions);
     for ((instruction, places), needed) in written.shader.instructions.iter().zip(&written.places).zip(needed) {
@@ -66,7 +66,7 @@ pub(super) fn unwritten(written: &Written, findings: &mut Vec<Diagnostic>) {
     }
 }
 
-impl Written {
+impl ShaderText {
     /// Returns the first place where each constant is read, if it is, and whether some are read by an address.
     pub fn constants_read(&self) -> ([Option<Span>; CONSTANTS], bool) {
         let mut read: [Option<Span>; CONSTANTS] = std::array::from_fn(|_| None);

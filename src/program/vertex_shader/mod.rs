@@ -16,7 +16,7 @@ pub use print::print;
 
 /// A program with the places of its parts in the text.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Written {
+pub struct ShaderText {
     /// The program that was read.
     pub shader: VertexShader,
     /// Places of each instruction.
@@ -42,7 +42,7 @@ pub struct InstructionPlaces {
 ///
 /// # Errors
 /// All errors, without warnings.
-pub fn read(text: &str) -> Result<Written, Vec<Diagnostic>> {
+pub fn read(text: &str) -> Result<ShaderText, Vec<Diagnostic>> {
     let (mut written, mut errors) = parser::lines(text);
     let findings = if errors.is_empty() { check::check(&written) } else { check::instructions(&written) };
     let (found, warnings): (Vec<_>, Vec<_>) =

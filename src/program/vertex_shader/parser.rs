@@ -1,7 +1,7 @@
 //! Reads lines of the language one after the other. Lines that cannot be read are reported and skipped, so that one run shows all errors.
 
 use super::check::natural;
-use super::{InstructionPlaces, Written, operand};
+use super::{InstructionPlaces, ShaderText, operand};
 use crate::Span;
 use crate::cursor::{Cursor, GivenUp, Read};
 use crate::finding::{finding, foreign, header, warning};
@@ -20,7 +20,7 @@ const MAX_INSTRUCTIONS: usize = 1024;
 pub(super) struct Parser<'t> {
     pub(super) cursor: Cursor<'t>,
     findings: Vec<Diagnostic>,
-    written: Written,
+    written: ShaderText,
     /// Index of the first token of the line.
     start: usize,
     version: Option<Span>,
@@ -30,15 +30,19 @@ pub(super) struct Parser<'t> {
 ///
 /// # Errors
 /// Findings about whatever is not an instruction, a definition or a version.
-pub fn parse(text: &str) -> Result<Written, Vec<Diagnostic>> {
+pub fn parse(text: &str) -> Result<ShaderText, Vec<Diagnostic>> {
     let (written, findings) = lines(text);
     if findings.is_empty() { Ok(written) } else { Err(findings) }
 }
 
 /// Reads every line that can be read. Also returns what is wrong with the others.
-pub(super) fn lines(text: &str) -> (Written, Vec<Diagnostic>) {
-    let written =
-        Written { shader: VertexShader::default(), places: Vec::new(), definitions: Vec::new(), warnings: Vec::new() };
+pub(super) fn lines(text: &str) -> (ShaderText, Vec<Diagnostic>) {
+    let written = ShaderText {
+        shader: VertexShader::default(),
+        places: Vec::new(),
+        definitions: Vec::new(),
+        warnings: Vec::new(),
+    };
     let cursor = Cursor::new(text, Language::ASSEMBLER);
     let mut parser = Parser { cursor, findings: Vec::new(), written, start: 0, version: None };
     if let Some(span) = parser.cursor.unclosed.clone() {

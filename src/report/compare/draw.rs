@@ -425,7 +425,11 @@ fn summed(plan: &Plan, options: &CompareOptions, outcome: Outcome) -> Comparison
             .map(|(errors, rule)| RuleError { rule: *rule, errors: *errors, bound: bound::error_range(*rule, plan) })
             .collect(),
         decisions: decisions
-            .map(|([taken, differing], decision)| Decided { decision: *decision, taken: *taken, differing: *differing })
+            .map(|([taken, differing], decision)| DecisionCount {
+                decision: *decision,
+                taken: *taken,
+                differing: *differing,
+            })
             .collect(),
         worst: if frames { outcome.worst } else { Vec::new() },
         errors: if frames { outcome.errors } else { Vec::new() },

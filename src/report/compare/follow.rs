@@ -3,7 +3,7 @@
 use super::draw::{Band, Draw, Method};
 use super::meter::{Counts, Meter};
 use ninebit::engine::walk;
-use ninebit::number::{IDEAL_TRACKS, Ideal, IdealTracks, Paired};
+use ninebit::number::{IDEAL_TRACKS, Ideal, IdealTracks, Pair};
 use ninebit::rop::surface;
 use ninebit::state::Named;
 use ninebit::trace::{Observer, Part, Rule};
@@ -15,7 +15,7 @@ pub(super) struct Follow;
 pub(super) struct PerOp;
 
 impl Method for Follow {
-    type Lane = Paired<IdealTracks<IDEAL_TRACKS>>;
+    type Lane = Pair<IdealTracks<IDEAL_TRACKS>>;
 
     fn draw(draw: &Draw<'_, Self::Lane>, band: &mut Band<'_, Self::Lane>, counts: &mut Counts) {
         follow(draw, band, &mut Meter::<false>(counts));
@@ -28,7 +28,7 @@ impl Method for Follow {
 }
 
 impl Method for PerOp {
-    type Lane = Paired<IdealTracks<1>>;
+    type Lane = Pair<IdealTracks<1>>;
 
     fn draw(draw: &Draw<'_, Self::Lane>, band: &mut Band<'_, Self::Lane>, counts: &mut Counts) {
         follow(draw, band, &mut Meter::<true>(counts));
@@ -40,16 +40,16 @@ impl Method for PerOp {
 }
 
 /// Converts a stored channel to what the picture shows.
-fn shown_as<I: Ideal>(shown: u8, held: Paired<I>, observer: &mut impl Observer) -> Paired<I> {
-    observer.observe(Rule::Rop5, Paired { fixed: i32::from(shown), ..held })
+fn shown_as<I: Ideal>(shown: u8, held: Pair<I>, observer: &mut impl Observer) -> Pair<I> {
+    observer.observe(Rule::Rop5, Pair { fixed: i32::from(shown), ..held })
 }
 
-fn follow<I: Ideal>(draw: &Draw<'_, Paired<I>>, band: &mut Band<'_, Paired<I>>, observer: &mut impl Observer) {
+fn follow<I: Ideal>(draw: &Draw<'_, Pair<I>>, band: &mut Band<'_, Pair<I>>, observer: &mut impl Observer) {
     let planned = draw.planned;
     walk::covered(draw.plan, planned, band.rows(), |context, i, j| {
         let at = band.at(i, j);
         let read = surface::read(planned.surface, band.words[at]);
-        let destination = std::array::from_fn(|n| Paired { fixed: i32::from(read[n]), ..band.held[at][n] });
+        let destination = std::array::from_fn(|n| Pair { fixed: i32::from(read[n]), ..band.held[at][n] });
         if let Some(stored) = band.shade(context, (i, j), Some(destination), &draw.images.lane, observer) {
             band.hold(at, planned, &stored.channels);
         }

@@ -89,7 +89,7 @@ impl RuleError {
 
 /// Number of times that a decision was taken, and that the ideal would have decided otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Decided {
+pub struct DecisionCount {
     /// The kind of decision.
     pub decision: Decision,
     /// Number of times that it was taken.
@@ -137,7 +137,7 @@ pub struct Comparison {
     /// Errors of each applied rule. [`Mode::PerOp`] only.
     pub rules: Vec<RuleError>,
     /// Decisions, and how often the two sides differ.
-    pub decisions: Vec<Decided>,
+    pub decisions: Vec<DecisionCount>,
     /// Pixels with the largest errors, largest first; each with its worst channel.
     pub worst: Vec<WorstPixel>,
     /// Errors of R, G, B, A, row by row; NaN where nothing was drawn, infinite where a pixel is left out. Empty for [`Mode::PerOp`].

@@ -2,7 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "display of errors")]
 
 use super::statistics::BINS;
-use super::{ChannelError, Comparison, Decided, Mode, RuleError, Statistics, WorstPixel};
+use super::{ChannelError, Comparison, DecisionCount, Mode, RuleError, Statistics, WorstPixel};
 use crate::{policies_text, policies_value, written};
 use ninebit::combiner::registers::channel_name;
 use ninebit::plan::Plan;
@@ -121,7 +121,8 @@ pub fn comparison_json(plan: &Plan, c: &Comparison) -> String {
         value["exceeds"] = rule.exceeds().into();
         value
     };
-    let decision = |d: &Decided| json!({ "decision": d.decision.name(), "taken": d.taken, "differing": d.differing });
+    let decision =
+        |d: &DecisionCount| json!({ "decision": d.decision.name(), "taken": d.taken, "differing": d.differing });
     let worst = |w: &WorstPixel| {
         let channel = channel_name(w.channel);
         json!({ "x": w.x, "y": w.y, "channel": channel, "model": w.shown, "ideal": w.ideal, "error": w.error() })

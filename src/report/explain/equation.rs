@@ -1,4 +1,4 @@
-//! Equations of stages, final combiner and blend, as far as the plan has kept them: the order of a pixel evaluated on [`Printed`]. Inputs are written
+//! Equations of stages, final combiner and blend, as far as the plan has kept them: the order of a pixel evaluated on [`EquationText`]. Inputs are written
 //! as in the combiner language.
 
 use ninebit::algebra::Algebra;
@@ -59,12 +59,12 @@ struct Text(usize);
 
 /// The algebra that prints the order of a pixel. A portion is printed once, as its first channel.
 #[derive(Debug, Default)]
-struct Printed {
+struct EquationText {
     terms: Vec<Term>,
     policies: Policies,
 }
 
-impl Printed {
+impl EquationText {
     fn push(&mut self, term: Term) -> Text {
         self.terms.push(term);
         Text(self.terms.len() - 1)
@@ -101,7 +101,7 @@ impl Printed {
     }
 }
 
-impl Algebra for Printed {
+impl Algebra for EquationText {
     type Register = Text;
     type Factor = Text;
     type Sum = Text;
@@ -244,7 +244,7 @@ pub(super) fn stage(stage: &PlannedStage, mux_select: MuxSelect) -> Vec<String> 
             lines.push(format!("{} = {r}, {g}, {b}, {a}", register(constant)));
         }
     }
-    let mut printed = Printed::default();
+    let mut printed = EquationText::default();
     let registers = printed.registers();
     let values = general::evaluate(stage, mux_select, &registers, &mut printed);
     let [rgb, alpha] = [values.rgb.outputs.map(|all| all[0]), values.alpha.outputs.map(|all| all[0])];
@@ -283,7 +283,7 @@ pub(super) fn final_combiner(planned: &PlannedFinal) -> Vec<String> {
             lines.push(format!("final: const{n} = {r}, {g}, {b}, {a}"));
         }
     }
-    let mut printed = Printed::default();
+    let mut printed = EquationText::default();
     let registers = printed.registers();
     let fragment = final_combiner::evaluate(state, &registers, &mut printed).fragment;
     for (live, value) in [(planned.live & 7, fragment[0]), (planned.live & 8, fragment[3])] {
@@ -297,7 +297,7 @@ pub(super) fn final_combiner(planned: &PlannedFinal) -> Vec<String> {
 /// Returns the equation of the blend, if there is one.
 pub(super) fn blend(planned: &PlannedDraw) -> Option<String> {
     let state = planned.blend.as_ref()?;
-    let mut printed = Printed::default();
+    let mut printed = EquationText::default();
     let mut color = |name: &str| ["", "", "", ".a"].map(|suffix| printed.push(Term::Plain(format!("{name}{suffix}"))));
     let (source, destination, constant) = (color("fragment"), color("destination"), color("constant"));
     // Alpha is blended like colour, except that one factor is 1 there.

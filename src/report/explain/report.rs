@@ -1,7 +1,7 @@
 //! Prints an explanation as text and as JSON.
 
 use super::{Cost, DrawExplanation};
-use crate::work::Shaded;
+use crate::work::ShadingWork;
 use ninebit::engine::{self, DrawCounts};
 use ninebit::plan::Plan;
 use ninebit::shown;
@@ -53,7 +53,7 @@ fn write(out: &mut String, plan: &Plan, draws: &[DrawExplanation], counted: Opti
         }
         write_cost(out, draw, counted.map(|all| &all[number]))?;
     }
-    let shaded = Shaded::from_draws(
+    let shaded = ShadingWork::from_draws(
         draws.iter().map(|draw| engine::Shaded { pixels: draw.cost.fragments, exact: draw.cost.exact }),
     );
     writeln!(out, "\nshaded pixels: {}", shaded.text())?;

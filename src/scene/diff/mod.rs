@@ -10,7 +10,7 @@ mod words;
 
 pub use histogram::ranges;
 pub use histogram::{Bucket, Histogram};
-pub use picture::{Highlighted, highlight};
+pub use picture::{DifferencePicture, highlight};
 pub use region::Region;
 pub use words::{CHANNELS, histogram_text, pixels, share};
 

@@ -5,7 +5,7 @@ use crate::image::Rgba;
 
 /// A picture of a difference, with the scale of its colours.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Highlighted {
+pub struct DifferencePicture {
     /// Opaque picture. An equal pixel is dark grey (0 to 63), by the brightness of the first picture. In a differing pixel, R, G and B are their
     /// absolute differences, or that of alpha where it is larger, times `scale`.
     pub picture: Rgba,
@@ -17,7 +17,7 @@ pub struct Highlighted {
 ///
 /// # Errors
 /// The sizes differ.
-pub fn highlight(a: &Rgba, b: &Rgba, ignore_alpha: bool) -> Result<Highlighted, SizeError> {
+pub fn highlight(a: &Rgba, b: &Rgba, ignore_alpha: bool) -> Result<DifferencePicture, SizeError> {
     same_size(a, b)?;
     let differences = |(a, b): (&[u8; 4], &[u8; 4])| steps(*a, *b, ignore_alpha).map(largest);
     let most = a.pixels.iter().zip(&b.pixels).flat_map(differences).max().unwrap_or(0);
@@ -37,7 +37,7 @@ pub fn highlight(a: &Rgba, b: &Rgba, ignore_alpha: bool) -> Result<Highlighted, 
             }
         })
         .collect();
-    Ok(Highlighted { picture: Rgba { width: a.width, height: a.height, pixels }, scale })
+    Ok(DifferencePicture { picture: Rgba { width: a.width, height: a.height, pixels }, scale })
 }
 
 #[cfg(test)]

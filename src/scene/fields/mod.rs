@@ -27,7 +27,7 @@ use std::fmt::Write;
 use super::field::*;
 use super::form::{self, Described, Form};
 use super::notation::Notation;
-use super::raw::{Entries, Numbers, Raw, Reserved, Tuple};
+use super::raw::{Entries, Numbers, Raw, ReservedValue, Tuple};
 use super::reader::{COUNT, FINITE, KIND, MISSING, Name, RANGE, Reader, TWICE, UNKNOWN, Valued, WORD};
 pub(crate) use super::source::*;
 use ninebit::diagnostic::Diagnostic;

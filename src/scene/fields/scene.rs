@@ -284,7 +284,7 @@ source! {
         /// this entry is a [clear](#clears), not a draw
         clear: ClearDraw<'a>,
         /// *reserved*
-        logic_op: Reserved,
+        logic_op: ReservedValue,
         /// what the units do besides sampling, Nv2a only: list of [stages](#texture-shader)
         texture_shader: List<'a, ShaderStage> [or "each unit with a texture samples it"],
         /// [generated texture coordinates](#generated-texture-coordinates)

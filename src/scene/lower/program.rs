@@ -10,7 +10,7 @@ use ninebit::legality::{Notation, check};
 use ninebit::state::named;
 use ninebit_program::c_source::Style;
 use ninebit_program::text::{self, words::Words};
-use ninebit_program::{Aside, Pasted, Places};
+use ninebit_program::{Aside, PastedProgram, Places};
 use ninebit_program::{combiner_calls, texture_environment as environment, texture_stages as stages};
 
 /// A pixel program of a draw.
@@ -158,10 +158,10 @@ impl Program {
 pub(super) fn pasted<P>(
     reader: &mut Reader<'_>,
     text: &ProgramText,
-    pasted: Result<Pasted<P>, Vec<Diagnostic>>,
+    pasted: Result<PastedProgram<P>, Vec<Diagnostic>>,
     asides: &mut Asides,
 ) -> Option<P> {
-    let Pasted { program, asides: found } = text.parsed(reader, pasted)?;
+    let PastedProgram { program, asides: found } = text.parsed(reader, pasted)?;
     for Aside { finding, field } in found {
         match field {
             Some(field) => asides.push((text.locate(finding), field)),

@@ -7,7 +7,7 @@ use crate::literal::Literal;
 use ninebit::diagnostic::{self, Source};
 use ninebit::limits::FileLimit;
 use ninebit_files::read::ReadError;
-use ninebit_program::c_source::{Expanded, Style, expand};
+use ninebit_program::c_source::{Expansion, Style, expand};
 
 /// The text of a program with its places.
 pub(super) struct ProgramText {
@@ -70,7 +70,7 @@ impl ProgramText {
     pub(super) fn expanded(self, reader: &mut Reader<'_>, style: Style) -> Option<Self> {
         match expand(&self.text, style, usize::try_from(reader.limits.program_bytes).unwrap_or(usize::MAX)) {
             Ok(None) => Some(self),
-            Ok(Some(Expanded { text, places })) => Some(ProgramText { text, before: Some(places), ..self }),
+            Ok(Some(Expansion { text, places })) => Some(ProgramText { text, before: Some(places), ..self }),
             Err(finding) => reader.refuse(self.locate(finding)),
         }
     }

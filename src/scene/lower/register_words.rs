@@ -3,7 +3,7 @@
 use super::program_text::{ProgramText, placed};
 use super::*;
 use ninebit_program::Places;
-use ninebit_program::registers::{Word, Written, read};
+use ninebit_program::registers::{Word, WordText, read};
 
 /// Reads a program with the places of its parts. Also returns the text that the places refer to, if it is not the scene. Returns `None`
 /// after recording what is wrong.
@@ -48,7 +48,7 @@ pub(super) fn of_text(reader: &mut Reader<'_>, text: &ProgramText) -> Option<(Co
     decoded(reader, given.written, Some(text))
 }
 
-fn decoded(reader: &mut Reader<'_>, words: Written, inside: Option<&ProgramText>) -> Option<(Combiners, Places)> {
+fn decoded(reader: &mut Reader<'_>, words: WordText, inside: Option<&ProgramText>) -> Option<(Combiners, Places)> {
     let found = |findings| placed(inside, findings).into_iter().for_each(|finding| reader.push(finding));
     words.program().map_err(found).ok()
 }
@@ -61,7 +61,7 @@ fn listed(reader: &mut Reader<'_>, text: &ProgramText) -> Option<WordReader> {
 
 /// Words, and whether one of them could not be read.
 struct WordReader {
-    written: Written,
+    written: WordText,
     wrong: bool,
 }
 
@@ -96,7 +96,7 @@ fn words<'a>(
     fields: impl Iterator<Item = (&'static str, &'a str)>,
     opening: Span,
 ) -> WordReader {
-    let mut given = WordReader { written: Written::new(chip, opening), wrong: false };
+    let mut given = WordReader { written: WordText::new(chip, opening), wrong: false };
     for (name, text) in fields {
         let word = Word::ALL.iter().copied().find(|word| word.name() == name);
         match word.map(|word| (word, word.count(chip))) {

@@ -10,7 +10,7 @@ use crate::generate::{hemisphere, occlusion};
 use crate::image::{self, ImageLimits, Rgba};
 use crate::reader::Name;
 use crate::truth::{
-    Equation, Eye, Field, HemisphereLight, Interpolated, Light, Material, NormalHolder, NormalSource, ShadingNormal,
+    Equation, Eye, Field, HemisphereLight, Light, Material, NormalHolder, NormalSource, ShadingNormal, VectorAttribute,
     real_color,
 };
 use crate::vector::wide;
@@ -103,7 +103,7 @@ fn equation<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<
         1 => Equation::SignedProduct,
         2 => Equation::Difference,
         _ => {
-            let list = Raw::<Tuple<'a, Name<Interpolated>>>::new(rest);
+            let list = Raw::<Tuple<'a, Name<VectorAttribute>>>::new(rest);
             let parts = reader.read(&list)?.0;
             let [a, b] = parts[..] else {
                 let help = "write `DotProduct(PrimaryColor, SecondaryColor)`";

@@ -12,7 +12,7 @@ use inputs::Input;
 use ninebit::vertex::point::eighths;
 use ninebit::vertex::shader::{Constants, DestinationRegister, Inputs, Outputs, VertexShader, evaluate};
 use ninebit_program::c_source::Style;
-use ninebit_program::vertex_shader::{self, Written, print};
+use ninebit_program::vertex_shader::{self, ShaderText, print};
 
 /// Runs the program over the vertices. Returns `None` after recording what is wrong.
 pub(super) fn geometry<'a>(reader: &mut Reader<'a>, target: usize, text: &'a str) -> Option<Geometry> {
@@ -55,7 +55,7 @@ fn program<'a>(
     reader: &mut Reader<'a>,
     fields: &source::ProgramVertices<'a>,
     opening: Span,
-) -> Option<(Written, ProgramText)> {
+) -> Option<(ShaderText, ProgramText)> {
     let text = match (&fields.text, &fields.file) {
         (Some(raw), None) => ProgramText::inline(reader, raw)?,
         (None, Some(raw)) => ProgramText::file(reader, raw)?,

@@ -40,7 +40,7 @@ named! {
 }
 named! {
     /// An interpolated attribute of the vertices that holds a vector.
-    pub enum Interpolated {
+    pub enum VectorAttribute {
         /// The primary colour, 0..1 standing for -1..1.
         PrimaryColor,
         /// The secondary colour, 0..1 standing for -1..1.
@@ -127,7 +127,7 @@ pub enum Equation {
     /// s - t; negative differences become 0.
     Difference,
     /// The dot product of two interpolated vectors, which are not normalised; negative products become 0.
-    DotProduct(Interpolated, Interpolated),
+    DotProduct(VectorAttribute, VectorAttribute),
 }
 
 /// The place where a technique's normals are read, before they are lit.

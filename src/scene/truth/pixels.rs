@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Equation, Field, Interpolated, NormalSource, Space, Truth, lighting};
+use super::{Equation, Field, NormalSource, Space, Truth, VectorAttribute, lighting};
 use crate::mesh::Mesh;
 use crate::vector::{Vector, dot, unit_or_zero, wide};
 use ninebit::engine::walk::{self, Band};
@@ -186,19 +186,19 @@ pub(crate) fn real_color(color: &VertexColor) -> [f64; 3] {
 }
 
 /// Interpolates a vector of the vertices.
-fn interpolated(point: &Point<'_>, what: Interpolated) -> Vector {
+fn interpolated(point: &Point<'_>, what: VectorAttribute) -> Vector {
     let signed = |color: &VertexColor| real_color(color).map(|c| 2.0 * c - 1.0);
     let set = |vertex: &Vertex, n: usize| {
         let [s, t, r, _] = vertex.texture_coordinates[n].map(f64::from);
         [s, t, r]
     };
     let values = point.planned.all().map(|vertex| match what {
-        Interpolated::PrimaryColor => signed(&vertex.diffuse),
-        Interpolated::SecondaryColor => signed(&vertex.specular),
-        Interpolated::T0 => set(&vertex, 0),
-        Interpolated::T1 => set(&vertex, 1),
-        Interpolated::T2 => set(&vertex, 2),
-        Interpolated::T3 => set(&vertex, 3),
+        VectorAttribute::PrimaryColor => signed(&vertex.diffuse),
+        VectorAttribute::SecondaryColor => signed(&vertex.specular),
+        VectorAttribute::T0 => set(&vertex, 0),
+        VectorAttribute::T1 => set(&vertex, 1),
+        VectorAttribute::T2 => set(&vertex, 2),
+        VectorAttribute::T3 => set(&vertex, 3),
     });
     mixed(point.weights, values)
 }

@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, HashMap};
 
 /// Names that are taken, and the number of the last one that was made of each.
 #[derive(Default)]
-pub(super) struct Used(HashMap<String, u64>);
+pub(super) struct UniqueNames(HashMap<String, u64>);
 
-impl Used {
+impl UniqueNames {
     /// Returns a name that is not taken yet: the wanted one, or one with a number behind it.
     pub(super) fn unique(&mut self, wanted: &str) -> String {
         let mut name = wanted.to_owned();

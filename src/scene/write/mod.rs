@@ -18,7 +18,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use draw::Parts;
-use files::{Files, Used};
+use files::{Files, UniqueNames};
 use ninebit::limits::Limits;
 use ninebit::state::*;
 use ninebit_program::registers;
@@ -62,9 +62,9 @@ pub fn scene(scene: &Scene, options: &WriteOptions) -> Result<SceneFiles, Unwrit
         return Err(whole("it has no render target".to_owned()));
     }
     let mut files = Files::new(&options.folder);
-    let (mut target_names, mut texture_names) = (Used::default(), Used::default());
+    let (mut target_names, mut texture_names) = (UniqueNames::default(), UniqueNames::default());
     let targets: Vec<String> = scene.targets.iter().map(|target| target_names.unique(&target.name)).collect();
-    let palettes = Palettes::collect(scene, &mut Used::default());
+    let palettes = Palettes::collect(scene, &mut UniqueNames::default());
     let mut textures = Textures::collect(scene, &mut texture_names);
     let target_list = write_targets(scene, &targets, &mut textures, &mut texture_names)?;
     let (names, draws) = write_draws(scene, &targets, (&textures, &palettes), options, &mut files)?;
@@ -93,7 +93,7 @@ fn write_targets(
     scene: &Scene,
     names: &[String],
     textures: &mut Textures,
-    texture_names: &mut Used,
+    texture_names: &mut UniqueNames,
 ) -> Result<Node, Unwritable> {
     let target = |(target, name): (&Target, &String)| {
         let reason = |reason| Unwritable { place: format!("target `{name}`"), reason };
@@ -123,10 +123,11 @@ fn write_draws(
     options: &WriteOptions,
     files: &mut Files,
 ) -> Result<(Fields, Node), Unwritable> {
-    let mut draw_names = Used::default();
+    let mut draw_names = UniqueNames::default();
     let names: Vec<String> = scene.draws.iter().map(|draw| draw_names.unique(&draw.name)).collect();
     let refused = |index: usize, reason: String| Unwritable { place: format!("draw `{}`", names[index]), reason };
-    let (mut vertices, mut programs, mut blends) = (Shared::default(), Shared::default(), Shared::default());
+    let (mut vertices, mut programs, mut blends) =
+        (SharedText::default(), SharedText::default(), SharedText::default());
     let mut parts = Vec::with_capacity(scene.draws.len());
     for (index, draw) in scene.draws.iter().enumerate() {
         let name = &names[index];
@@ -193,11 +194,11 @@ fn program(draw: &Draw, profile: Profile, options: &WriteOptions) -> Option<Node
 
 /// Values of one kind, of which those that occur more than once get a name.
 #[derive(Default)]
-struct Shared {
+struct SharedText {
     /// The numbers of values by their texts.
     numbers: HashMap<String, usize>,
     values: Vec<SharedValue>,
-    names: Used,
+    names: UniqueNames,
 }
 
 struct SharedValue {
@@ -206,7 +207,7 @@ struct SharedValue {
     uses: usize,
 }
 
-impl Shared {
+impl SharedText {
     /// Adds a value, whose name is that of a draw. Returns its number.
     fn add(&mut self, draw: &str, value: Node) -> usize {
         let number = *self.numbers.entry(value.flat()).or_insert(self.values.len());

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::error::Unwritable;
-use super::files::{Files, Used};
+use super::files::{Files, UniqueNames};
 use super::node::{Fields, Node};
 use ninebit::legality::texture::TextureChecks;
 use ninebit::state::*;
@@ -30,7 +30,7 @@ struct Entry {
 
 impl Textures {
     /// Collects those textures that some draw has bound.
-    pub(super) fn collect(scene: &Scene, names: &mut Used) -> Textures {
+    pub(super) fn collect(scene: &Scene, names: &mut UniqueNames) -> Textures {
         let mut palettes: Vec<Option<Option<usize>>> = vec![None; scene.textures.len()];
         for unit in scene.draws.iter().flat_map(|draw| draw.textures.iter().flatten()) {
             if let Some(first) = palettes.get_mut(unit.texture) {
@@ -66,7 +66,7 @@ impl Textures {
         (target, format): (&Target, TextureFormat),
         words: &[u32],
         profile: Profile,
-        names: &mut Used,
+        names: &mut UniqueNames,
     ) -> Result<String, String> {
         let sides = [target.width, target.height];
         let powers = sides.iter().all(|side| side.is_power_of_two());
@@ -234,7 +234,7 @@ pub(super) struct Palettes {
 }
 
 impl Palettes {
-    pub(super) fn collect(scene: &Scene, names: &mut Used) -> Palettes {
+    pub(super) fn collect(scene: &Scene, names: &mut UniqueNames) -> Palettes {
         let mut read = vec![false; scene.palettes.len()];
         for unit in scene.draws.iter().flat_map(|draw| draw.textures.iter().flatten()) {
             if let Some(flag) = unit.palette.and_then(|palette| read.get_mut(palette)) {

@@ -118,7 +118,7 @@ impl fmt::Debug for Frame {
 /// An error of this crate: rows of the table that no code draws, or frames that have no row.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{} frames and rows do not meet: {}", .0.len(), .0[..self.0.len().min(3)].join("; "))]
-pub struct Unmatched(Vec<String>);
+pub struct FrameMismatch(Vec<String>);
 
 /// Returns the names of all suites, in the order of the table.
 pub fn suites() -> impl Iterator<Item = &'static str> {
@@ -256,7 +256,7 @@ const SUITES: &[Suite] = &[
 ///
 /// # Errors
 /// Returns an error if a frame has no row in the table, or a row has no frame.
-pub fn frames(wanted: &[&str]) -> Result<Vec<Frame>, Unmatched> {
+pub fn frames(wanted: &[&str]) -> Result<Vec<Frame>, FrameMismatch> {
     let mut all = Vec::new();
     let mut unmatched = Vec::new();
     let rows: Vec<Row> = table::rows().collect();
@@ -274,7 +274,7 @@ pub fn frames(wanted: &[&str]) -> Result<Vec<Frame>, Unmatched> {
         }
         unmatched.extend(drawn.0.iter().map(|(name, _)| format!("{suite}/{name} is not in the table")));
     }
-    if unmatched.is_empty() { Ok(all) } else { Err(Unmatched(unmatched)) }
+    if unmatched.is_empty() { Ok(all) } else { Err(FrameMismatch(unmatched)) }
 }
 
 /// Returns about `count` of the frames: the same share of each suite, at least one, and evenly spread over it.

@@ -2,7 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "coordinates that OpenGL is handed")]
 
 use super::fixed::drawn;
-use super::{Case, Draw, Path, Placement, Read, byte};
+use super::{Case, Contribution, Draw, Path, Placement, byte};
 use ninebit::state::{AddressMode, DepthFormat, ShadowReference, StencilOperation};
 use std::f32::consts::LN_2;
 
@@ -43,7 +43,7 @@ pub(super) fn stencil_test(case: &Case) -> Option<Placement> {
     };
     let needs = if wraps { vec!["GL_EXT_stencil_wrap"] } else { vec![] };
     let sources = vec![("primary", vec![1; 4]), ("stencil0", row)];
-    let draws = vec![draw(1, Read::byte("out.stored", 4)), draw(0, Read::byte("out.passes", 0))];
+    let draws = vec![draw(1, Contribution::byte("out.stored", 4)), draw(0, Contribution::byte("out.passes", 0))];
     Some(Placement { draws, ..drawn(Path::Common, needs, vec![], sources, vec![]) })
 }
 
@@ -60,7 +60,7 @@ pub(super) fn fog_table(case: &Case) -> Option<Placement> {
     };
     let sources = vec![("fog0", d.to_le_bytes().to_vec())];
     let (needs, state) = (vec!["GL_EXT_fog_coord"], vec![format!("fog {mode}")]);
-    (steps <= 0).then(|| drawn(Path::Common, needs, state, sources, vec![Read::byte("out.byte", 0)]))
+    (steps <= 0).then(|| drawn(Path::Common, needs, state, sources, vec![Contribution::byte("out.byte", 0)]))
 }
 
 /// OpenGL's words for texels of [`DepthFormat::Z16`].
@@ -99,7 +99,7 @@ fn compared(case: &Case, format: &str, sources: Vec<(&'static str, Vec<u8>)>) ->
     let parameters = [("MODE", "COMPARE_R_TO_TEXTURE"), ("FUNC", function)];
     let parameters = parameters.map(|(name, value)| format!("parameter 0 TEXTURE_COMPARE_{name} {value}"));
     let state = [vec![format!("texels 0 {format}")], parameters.to_vec()].concat();
-    drawn(Path::Common, needs, state, sources, vec![Read::byte("out.value", 0)])
+    drawn(Path::Common, needs, state, sources, vec![Contribution::byte("out.value", 0)])
 }
 
 /// Compares four texels of a depth texture under the linear filter. Rows where r is near one of them, or near their mixture, are left out: their

@@ -3,7 +3,7 @@
 //! Operands are bytes of texels or colours; a preceding general stage makes negative ones out of constants. Results are read from the final combiner,
 //! which shows 0 to 255: a second draw shows the negated result, and a third tells -256 from -255.
 
-use super::{Draw, Path, Placement, Read};
+use super::{Contribution, Draw, Path, Placement};
 use ninebit::legality::Notation;
 use ninebit::state::*;
 use ninebit_program::combiner_calls::{self, Words};
@@ -105,8 +105,11 @@ impl Program {
         let mut draws = Vec::new();
         for output in outputs {
             let reads = |weight| {
-                let read =
-                    |(column, channel): &(String, usize)| Read { column: column.clone(), channel: *channel, weight };
+                let read = |(column, channel): &(String, usize)| Contribution {
+                    column: column.clone(),
+                    channel: *channel,
+                    weight,
+                };
                 output.columns.iter().map(read).collect::<Vec<_>>()
             };
             draws.push(self.draw(&[], &FinalCombiner::showing(FinalRegister::from(output.register)), reads(1)));
@@ -123,7 +126,7 @@ impl Program {
     }
 
     /// Returns the placement with one draw, whose final combiner is `last`.
-    pub(super) fn finished(self, last: FinalCombiner, reads: Vec<Read>) -> Option<Placement> {
+    pub(super) fn finished(self, last: FinalCombiner, reads: Vec<Contribution>) -> Option<Placement> {
         if self.stages.len() > self.profile.general_stages() {
             return None;
         }
@@ -132,7 +135,7 @@ impl Program {
     }
 
     /// Returns a draw with further stages after the shared ones.
-    fn draw(&self, after: &[GeneralStage], last: &FinalCombiner, reads: Vec<Read>) -> Draw {
+    fn draw(&self, after: &[GeneralStage], last: &FinalCombiner, reads: Vec<Contribution>) -> Draw {
         let mut stages = self.stages.clone();
         stages.extend_from_slice(after);
         let mut state = vec![format!("combiners {}", stages.len())];

@@ -1,6 +1,6 @@
 //! Recipes that need no register combiners: the texture environment, texels and coordinates, colours, alpha test, blending.
 
-use super::{Case, Draw, Path, Placement, Read, byte};
+use super::{Case, Contribution, Draw, Path, Placement, byte};
 use ninebit::state::{AddressMode, Bias, BlendEquation, TextureFormat};
 
 /// Returns a placement with one draw.
@@ -9,14 +9,18 @@ pub(super) fn drawn(
     needs: Vec<&'static str>,
     state: Vec<String>,
     sources: Vec<(&'static str, Vec<u8>)>,
-    reads: Vec<Read>,
+    reads: Vec<Contribution>,
 ) -> Placement {
     Placement { path, needs, state, draws: vec![Draw { state: Vec::new(), reads, combiners: None }], sources }
 }
 
 /// Reads the four channels of the pixel into `out.r` to `out.a`.
-pub(super) fn colors() -> Vec<Read> {
-    ["out.r", "out.g", "out.b", "out.a"].into_iter().enumerate().map(|(n, column)| Read::byte(column, n)).collect()
+pub(super) fn colors() -> Vec<Contribution> {
+    ["out.r", "out.g", "out.b", "out.a"]
+        .into_iter()
+        .enumerate()
+        .map(|(n, column)| Contribution::byte(column, n))
+        .collect()
 }
 
 /// Returns the bytes of a colour of the row, or `None` if a channel is not a byte.
@@ -60,7 +64,7 @@ fn modulate(case: &Case, column: &str, state: &[String]) -> Option<Placement> {
     let [a, b] = case.numbers(["in.a", "in.b"]);
     let sources = vec![("texture0", vec![byte(a)?; 4]), ("primary", vec![byte(b)?; 4])];
     let state = [combine("MODULATE"), state.to_vec()].concat();
-    Some(drawn(Path::Environment, vec![COMBINE], state, sources, vec![Read::byte(column, 0)]))
+    Some(drawn(Path::Environment, vec![COMBINE], state, sources, vec![Contribution::byte(column, 0)]))
 }
 
 pub(super) fn product(case: &Case) -> Option<Placement> {
@@ -92,14 +96,14 @@ pub(super) fn dot_product(case: &Case) -> Option<Placement> {
     }
     let state = [combine("DOT3_RGB"), vec!["env 0 RGB_SCALE 1".to_owned()]].concat();
     let needs = vec![COMBINE, "GL_ARB_texture_env_dot3|GL_EXT_texture_env_dot3"];
-    Some(drawn(Path::Environment, needs, state, sources, vec![Read::byte("out.dot", 0)]))
+    Some(drawn(Path::Environment, needs, state, sources, vec![Contribution::byte("out.dot", 0)]))
 }
 
 pub(super) fn vertex_color(case: &Case) -> Option<Placement> {
     let color = float(case.number("in.color"))?;
     let one = 1.0_f32.to_le_bytes();
     let sources = vec![("primary_float", [color, color, color, one].concat())];
-    Some(drawn(Path::Common, vec![], vec![], sources, vec![Read::byte("out.byte", 0)]))
+    Some(drawn(Path::Common, vec![], vec![], sources, vec![Contribution::byte("out.byte", 0)]))
 }
 
 /// Evaluates the constant colour of the texture environment.
@@ -117,7 +121,7 @@ pub(super) fn constant_color(case: &Case) -> Option<Placement> {
     ];
     let state = state.map(str::to_owned).to_vec();
     let sources = vec![("environment_float", [color, color, color, one].concat())];
-    Some(drawn(Path::Common, vec![COMBINE], state, sources, vec![Read::byte("out.byte", 0)]))
+    Some(drawn(Path::Common, vec![COMBINE], state, sources, vec![Contribution::byte("out.byte", 0)]))
 }
 
 /// Returns OpenGL's name of an address mode, and the extensions that it needs.
@@ -134,8 +138,12 @@ pub(super) fn wrap(mode: AddressMode) -> (&'static str, Vec<&'static str>) {
 }
 
 /// Reads the number of a texel that encodes its own position, and whether a texel was read at all.
-pub(super) fn numbered(column: &str) -> Vec<Read> {
-    vec![Read::byte("out.inside", 2), Read::byte(column, 0), Read { weight: 256, ..Read::byte(column, 1) }]
+pub(super) fn numbered(column: &str) -> Vec<Contribution> {
+    vec![
+        Contribution::byte("out.inside", 2),
+        Contribution::byte(column, 0),
+        Contribution { weight: 256, ..Contribution::byte(column, 1) },
+    ]
 }
 
 /// Reads a texture whose texels encode their positions. Only sizes that are powers of two are asked: their coordinates are exact.
@@ -159,7 +167,7 @@ fn filtered(texels: [i64; 4], weights: [i64; 2]) -> Option<Placement> {
         quad.extend([byte(texel)?; 4]);
     }
     let sources = vec![("quads0", quad), ("weights0", vec![byte(weights[0])?, byte(weights[1])?])];
-    Some(drawn(Path::Common, vec![], vec![], sources, vec![Read::byte("out.value", 0)]))
+    Some(drawn(Path::Common, vec![], vec![], sources, vec![Contribution::byte("out.value", 0)]))
 }
 
 pub(super) fn bilinear(case: &Case) -> Option<Placement> {
@@ -181,7 +189,8 @@ pub(super) fn cube_face(case: &Case) -> Option<Placement> {
     }
     let [x, y, z] = case.numbers(["in.x", "in.y", "in.z"]).map(float);
     let sources = vec![("coordinates0", [x?, y?, z?].concat())];
-    let reads = vec![Read::byte("out.face", 2), Read::byte("out.u>>8", 0), Read::byte("out.v>>8", 1)];
+    let reads =
+        vec![Contribution::byte("out.face", 2), Contribution::byte("out.u>>8", 0), Contribution::byte("out.v>>8", 1)];
     let needs = vec!["GL_ARB_texture_cube_map|GL_EXT_texture_cube_map"];
     Some(drawn(Path::Common, needs, vec![format!("cube 0 {size}")], sources, reads))
 }
@@ -237,7 +246,7 @@ pub(super) fn alpha_test(case: &Case) -> Option<Placement> {
     let function = case.word("cfg.function", FUNCTIONS);
     let state = vec![format!("alpha_test {function} {}", case.number("cfg.reference"))];
     let sources = vec![("primary", vec![1, 1, 1, byte(case.number("in.alpha"))?])];
-    Some(drawn(Path::Common, vec![], state, sources, vec![Read::byte("out.passes", 0)]))
+    Some(drawn(Path::Common, vec![], state, sources, vec![Contribution::byte("out.passes", 0)]))
 }
 
 const FACTORS: &str = "ZERO ONE SRC_COLOR ONE_MINUS_SRC_COLOR SRC_ALPHA ONE_MINUS_SRC_ALPHA DST_ALPHA \

@@ -49,14 +49,14 @@ pub struct Draw {
     /// State lines of this draw only.
     pub state: Vec<String>,
     /// The contributions of its pixels to the results.
-    pub reads: Vec<Read>,
+    pub reads: Vec<Contribution>,
     /// The combiners that the state sets; `None` on paths without combiners.
     pub combiners: Option<Combiners>,
 }
 
 /// Adds a byte of the pixel, times a weight, to a column that starts at 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Read {
+pub struct Contribution {
     /// Name of the unit's column; `out.u>>8` is that column without its eight lowest bits.
     pub column: String,
     /// Channel: 0 to 3 for R, G, B, A, and 4 for the stencil.
@@ -65,10 +65,10 @@ pub struct Read {
     pub weight: i64,
 }
 
-impl Read {
+impl Contribution {
     /// Returns a read of a byte with weight 1.
-    fn byte(column: &str, channel: usize) -> Read {
-        Read { column: column.to_owned(), channel, weight: 1 }
+    fn byte(column: &str, channel: usize) -> Contribution {
+        Contribution { column: column.to_owned(), channel, weight: 1 }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Recipes for the register combiners.
 
 use super::combiners::{Output, Program, input, load, one, rgb_stage, sign, stage};
-use super::{Case, Placement, Read, byte};
+use super::{Case, Contribution, Placement, byte};
 use crate::units::final_combiner::{OWN, Source};
 use ninebit::state::*;
 
@@ -142,7 +142,7 @@ pub(super) fn mux(case: &Case) -> Option<Placement> {
     let zero = FinalInput::zero(Component::Rgb);
     let read = FinalInput { register: FinalRegister::Spare1, component: Component::Rgb, invert: false };
     let last = FinalCombiner { inputs: [zero, zero, zero, read, zero, zero], ..last };
-    program.finished(last, vec![Read::byte("out.takes_cd", 0)])
+    program.finished(last, vec![Contribution::byte("out.takes_cd", 0)])
 }
 
 /// Returns whether OpenGL can select this mux.
@@ -262,5 +262,5 @@ pub(super) fn final_combiner(case: &Case) -> Option<Placement> {
         invert_secondary: false,
         constants: [[0; 4]; 2],
     };
-    program.finished(last, vec![Read::byte("out.r", 0), Read::byte("out.a", 3)])
+    program.finished(last, vec![Contribution::byte("out.r", 0), Contribution::byte("out.a", 3)])
 }

@@ -27,7 +27,7 @@ const RECORD: &str = "ADOPTED.json";
 /// Record of adopted results.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Adopted {
+pub struct AdoptionRecord {
     /// Version of the format: `ninebit-adopted-1`.
     pub format: String,
     /// The card's name in this project, which is also the name of its folder.
@@ -82,7 +82,7 @@ pub fn adopt(
     manifest: &Manifest,
     results: &Results,
     comparison: &Comparison,
-) -> Result<(PathBuf, Adopted), VectorError> {
+) -> Result<(PathBuf, AdoptionRecord), VectorError> {
     let source = results.units.first().and_then(|unit| unit.path.parent());
     let device_path = source.unwrap_or(Path::new("")).join(DEVICE);
     let refuse = |message: String, help| VectorError::file("NB1036", &device_path, message, help);
@@ -126,7 +126,7 @@ pub fn adopt(
     }
     copy(&device_path, &part.path().join(DEVICE)).map_err(named)?;
     let contradicts = units.iter().any(|unit| unit.contradicted > 0);
-    let adopted = Adopted {
+    let adopted = AdoptionRecord {
         format: FORMAT.to_owned(),
         device: name.to_owned(),
         vendor: device.vendor.clone(),

@@ -180,7 +180,7 @@ pub fn deviations(
     let of = |(row, result): (&TableRow, &ResultRow)| {
         let mut yields = vec![0; row.results.len()];
         unit.evaluate(&row.inputs, &Conditions { profile, policies }, &mut yields);
-        let apart = |(column, value): (&Observed, &i64)| value - expected(&yields, column);
+        let apart = |(column, value): (&ObservedColumn, &i64)| value - expected(&yields, column);
         result.values.as_ref().map(|values| results.columns.iter().zip(values).map(apart).collect())
     };
     Ok(paired(table, results)?.into_iter().map(of).collect())
@@ -200,7 +200,7 @@ pub fn table_of<'t>(tables: &'t [Table], results: &UnitResults) -> Result<&'t Ta
 }
 
 /// Returns the expected number of an observed column.
-fn expected(results: &[i64], column: &Observed) -> i64 {
+fn expected(results: &[i64], column: &ObservedColumn) -> i64 {
     results[column.column] >> column.shift
 }
 

@@ -77,7 +77,7 @@ impl Device {
 
 /// An observed column.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Observed {
+pub struct ObservedColumn {
     /// The column's name in the results, such as `out.u>>8`.
     pub name: String,
     /// Index among the unit's result columns.
@@ -96,7 +96,7 @@ pub struct UnitResults {
     /// Chip, level, seed and behaviour of the table that was drawn, as text.
     pub asked: [String; 4],
     /// The observed columns.
-    pub columns: Vec<Observed>,
+    pub columns: Vec<ObservedColumn>,
     /// The rows, in the order of the file.
     pub rows: Vec<ResultRow>,
     /// Number of rows in batches that the device could not draw.

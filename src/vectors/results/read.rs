@@ -76,7 +76,7 @@ fn checked<'t>(text: &'t str, path: &Path) -> Result<&'t str, VectorError> {
 }
 
 /// Reads the columns between `id` and `status`. There are none if the chip cannot show the unit's results.
-fn observed(names: &str, results: &[Column]) -> Option<Vec<Observed>> {
+fn observed(names: &str, results: &[Column]) -> Option<Vec<ObservedColumn>> {
     let mut names = names.split('\t');
     if names.next() != Some("id") || names.next_back() != Some("status") {
         return None;
@@ -85,12 +85,12 @@ fn observed(names: &str, results: &[Column]) -> Option<Vec<Observed>> {
         let (of, shift) = name.split_once(">>").unwrap_or((name, "0"));
         let column = results.iter().position(|column| column.name == of && of.starts_with("out."))?;
         let shift = shift.parse().ok().filter(|shift| *shift < 32)?;
-        Some(Observed { name: name.to_owned(), column, shift })
+        Some(ObservedColumn { name: name.to_owned(), column, shift })
     };
     names.map(column).collect()
 }
 
-fn row(text: &str, line: usize, columns: &[Observed], results: &[Column]) -> Result<ResultRow, String> {
+fn row(text: &str, line: usize, columns: &[ObservedColumn], results: &[Column]) -> Result<ResultRow, String> {
     let fields: Vec<&str> = text.split('\t').collect();
     let wanted = columns.len() + 2;
     if columns.is_empty() {
@@ -106,7 +106,7 @@ fn row(text: &str, line: usize, columns: &[Observed], results: &[Column]) -> Res
     let observed = &fields[1..=columns.len()];
     let values = match fields[columns.len() + 1] {
         "ok" => {
-            let read = |(field, column): (&&str, &Observed)| {
+            let read = |(field, column): (&&str, &ObservedColumn)| {
                 let value = number(field, &results[column.column].kind);
                 value.ok_or_else(|| format!("`{field:.60}` is not a value of {}", column.name))
             };

@@ -9,7 +9,7 @@ use ninebit::combiner::final_combiner::{self, PlannedFinal};
 use ninebit::combiner::general::{self, PlannedPortion, PlannedStage};
 use ninebit::combiner::registers::{self, Registers, channel_name};
 use ninebit::engine;
-use ninebit::number::{Lane, Paired};
+use ninebit::number::{Lane, Pair};
 use ninebit::plan::{Plan, PlanError, PlanOptions};
 use ninebit::rop::surface;
 use ninebit::state::*;
@@ -337,7 +337,7 @@ impl ConfiguredFilter {
         if self.coordinates {
             let (unit, at) = (one_channel(self.signed), [inputs[4], inputs[5]]);
             let (report, ideal) = (Report { unit: &unit, prefix: "" }, at.map(|c| c as f64));
-            let (_, weights) = unit::footprint_weights::<Paired, _>(&report, at, ideal, Rule::Int4, observer);
+            let (_, weights) = unit::footprint_weights::<Pair, _>(&report, at, ideal, Rule::Int4, observer);
             row[5..].copy_from_slice(&weights.map(|weight| weight.fixed.into()));
         }
         observed(&FilteredChannel, &row, conditions, observer)

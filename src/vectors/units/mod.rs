@@ -118,7 +118,7 @@ pub use configured::{
 
 use super::column::{Column, Kind};
 use super::unit::{Conditions, Reach, Unit};
-use ninebit::number::Paired;
+use ninebit::number::Pair;
 use ninebit::state::{Bias, Named, Scale};
 
 /// Returns every unit of the catalogue.
@@ -265,6 +265,6 @@ fn put<T: Into<i64>>(results: &mut [i64], values: impl IntoIterator<Item = T>) {
 }
 
 /// Returns a register's integer with the ideal's real number.
-fn paired(value: i64) -> Paired {
-    Paired { fixed: value as i32, ideal: value as f64 }
+fn paired(value: i64) -> Pair {
+    Pair { fixed: value as i32, ideal: value as f64 }
 }

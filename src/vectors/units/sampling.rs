@@ -9,7 +9,7 @@ use ninebit::state::{
     self, AddressMode, ColorKeyMode, CompareFunction, DepthFormat, Named, Profile, ShadowReference, TextureFormat,
     TextureKind, TextureUnit, depth_stencil, largest_anisotropy,
 };
-use ninebit::texture::coordinates::{Coordinates, Interpolated, SampleCoordinates, wrapped};
+use ninebit::texture::coordinates::{Coordinates, SampleCoordinates, VertexCoordinates, wrapped};
 use ninebit::texture::fetch::Texel;
 use ninebit::texture::planned::PlannedUnit;
 use ninebit::texture::unit::layer;
@@ -17,10 +17,10 @@ use ninebit::texture::{anisotropy, color_key, format, shadow};
 use ninebit::trace::Silent;
 
 /// Calls `then` with interpolated coordinates, where all vertices have the coordinates (0, 0, r, q).
-fn with_place<T>(unit: &PlannedUnit, [r, q]: [f32; 2], then: impl FnOnce(&Interpolated<'_>) -> T) -> Option<T> {
+fn with_place<T>(unit: &PlannedUnit, [r, q]: [f32; 2], then: impl FnOnce(&VertexCoordinates<'_>) -> T) -> Option<T> {
     raster::with_place([0.0, 0.0, r, q], |at, vertices| {
         let coordinates = &Coordinates::new(vertices.coordinates(0), unit);
-        then(&Interpolated { unit, coordinates, at, pixel: (8, 8), vertices, perspective: false })
+        then(&VertexCoordinates { unit, coordinates, at, pixel: (8, 8), vertices, perspective: false })
     })
 }
 

@@ -2,9 +2,9 @@
 
 use super::raster::with_place;
 use super::{Column, Conditions, Kind, Reach, Unit, float, named, paired, put};
-use ninebit::number::{Lane, Paired};
+use ninebit::number::{Lane, Pair};
 use ninebit::state::*;
-use ninebit::texture::coordinates::{Coordinates, Interpolated, SampleCoordinates, real_coordinate};
+use ninebit::texture::coordinates::{Coordinates, SampleCoordinates, VertexCoordinates, real_coordinate};
 use ninebit::texture::cube::Face;
 use ninebit::texture::dependent::{Dependent, Target};
 use ninebit::texture::planned::PlannedUnit;
@@ -187,7 +187,7 @@ impl Unit for Bilinear {
     fn trace(&self, inputs: &[i64], _: &Conditions, recorder: &mut Recorder) {
         // Texels of 0 to 127 mean the same in signed and unsigned channels.
         let unit = one_channel(inputs[..4].iter().any(|t| *t < 0));
-        mixed::<Paired>(&unit, inputs, recorder);
+        mixed::<Pair>(&unit, inputs, recorder);
     }
 }
 
@@ -258,7 +258,7 @@ impl CubeDirection {
         let (unit, [x, y, z]) = (cube(inputs[0]), [1, 2, 3].map(|n| inputs[n] as f32));
         let found = with_place([x, y, z, 1.0], |at, vertices| {
             let coordinates = &Coordinates::new(vertices.coordinates(0), &unit);
-            let place = Interpolated { unit: &unit, coordinates, at, pixel: (0, 0), vertices, perspective: true };
+            let place = VertexCoordinates { unit: &unit, coordinates, at, pixel: (0, 0), vertices, perspective: true };
             met(&unit, &place, observer)
         });
         found.unwrap_or_default()

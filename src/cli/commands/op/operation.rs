@@ -6,7 +6,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use ninebit::number::{Lane, Paired};
+use ninebit::number::{Lane, Pair};
 use ninebit::state::{Named, POLICIES, Policies, Profile};
 use ninebit::trace::{Observer, Recorder, Silent, Step};
 use ninebit_report::{policies_text, policies_value, steps_text, steps_value};
@@ -194,7 +194,7 @@ impl<'u> Setup<'u> {
     }
 
     /// Returns what each open rule would change: the rule, its value, and the results that would be others. `None` for a unit without such rules.
-    fn alternatives(&self, values: &[i64]) -> Option<Vec<Changed>> {
+    fn alternatives(&self, values: &[i64]) -> Option<Vec<AlternativeResults>> {
         let open = |rule: &&str| POLICIES.iter().any(|policy| policy.rule == *rule);
         let asks = self.unit.rules().iter().any(open) || !self.unit.readings().is_empty();
         if !self.depends || !asks {
@@ -206,7 +206,11 @@ impl<'u> Setup<'u> {
         let changed = |alternative: &Alternative| {
             let results = alternative.changed(&columns, &own).filter(|(column, _)| !column.name.starts_with("mid."));
             let results = results.map(|(column, value)| (column.name.clone(), (self.written)(column, value)));
-            Changed { rule: alternative.rule, policy: alternative.policy.clone(), results: results.collect() }
+            AlternativeResults {
+                rule: alternative.rule,
+                policy: alternative.policy.clone(),
+                results: results.collect(),
+            }
         };
         Some(found.iter().map(changed).collect())
     }
@@ -229,24 +233,24 @@ impl<'u> Setup<'u> {
     }
 
     /// Computes a row: results, steps, and what open rules would change.
-    pub(in crate::commands) fn compute_row(&self, values: &[i64]) -> Told<'_> {
+    pub(in crate::commands) fn compute_row(&self, values: &[i64]) -> OperationRun<'_> {
         let mut recorder = Recorder::default();
         let results = self.results(values, &mut recorder);
         let mut steps = given_steps(&self.columns, values, &recorder.steps);
         steps.append(&mut recorder.steps);
-        Told { setup: self, steps, results, changed: self.alternatives(values) }
+        OperationRun { setup: self, steps, results, changed: self.alternatives(values) }
     }
 }
 
 /// An operation that was run.
-pub(in crate::commands) struct Told<'s> {
+pub(in crate::commands) struct OperationRun<'s> {
     setup: &'s Setup<'s>,
     steps: Vec<Step>,
     results: Results,
-    changed: Option<Vec<Changed>>,
+    changed: Option<Vec<AlternativeResults>>,
 }
 
-impl Told<'_> {
+impl OperationRun<'_> {
     /// Returns it as JSON.
     pub(in crate::commands) fn value(&self) -> Value {
         let Conditions { profile, policies } = &self.setup.conditions;
@@ -258,7 +262,7 @@ impl Told<'_> {
             "policies": depends.then(|| policies_value(policies)),
             "steps": steps_value(&self.steps),
             "results": self.results.iter().cloned().collect::<Map<String, Value>>(),
-            "alternatives": self.changed.as_ref().map(|all| all.iter().map(Changed::value).collect::<Vec<_>>()),
+            "alternatives": self.changed.as_ref().map(|all| all.iter().map(AlternativeResults::value).collect::<Vec<_>>()),
         })
     }
 
@@ -289,7 +293,7 @@ impl Told<'_> {
     pub(in crate::commands) fn changes(&self) -> String {
         let Some(all) = &self.changed else { return String::new() };
         let mut out = undecided::sentence(all.iter().map(|each| each.rule), "this result") + "\n";
-        for Changed { policy, results, .. } in all {
+        for AlternativeResults { policy, results, .. } in all {
             let results: Vec<String> =
                 results.iter().map(|(name, value)| format!("{name} {}", result_text(value))).collect();
             let _ = writeln!(out, "  {policy:<16} {}", results.join("  "));
@@ -299,13 +303,13 @@ impl Told<'_> {
 }
 
 /// What another value of an open rule changes.
-struct Changed {
+struct AlternativeResults {
     rule: &'static str,
     policy: String,
     results: Results,
 }
 
-impl Changed {
+impl AlternativeResults {
     fn value(&self) -> Value {
         json!({ "policy": self.policy, "results": self.results.iter().cloned().collect::<Map<String, Value>>() })
     }
@@ -325,7 +329,7 @@ fn given_steps(columns: &[Column], values: &[i64], steps: &[Step]) -> Vec<Step> 
             let step = Step::plain("given", "", column.input.name.clone(), *value).per(column.per_one);
             match column.per_one {
                 1 => step,
-                _ if column.signed_texel => step.ideal(<Paired>::texel(0, *value as i32, 128).observe().1),
+                _ if column.signed_texel => step.ideal(<Pair>::texel(0, *value as i32, 128).observe().1),
                 _ => step.ideal(*value as f64),
             }
         })

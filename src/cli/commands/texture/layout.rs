@@ -6,16 +6,16 @@
 use std::ops::Range;
 
 use ninebit::state::TextureKind;
-use ninebit::texture::show::{self, Shown};
+use ninebit::texture::show::{self, LevelPicture};
 use ninebit_scene::image::Rgba;
 
-use super::source::Opened;
+use super::source::TextureSource;
 
 /// Column and row of each face in the cross, in the order +X, -X, +Y, -Y, +Z, -Z.
 const CROSS: [(u32, u32); 6] = [(2, 1), (0, 1), (1, 0), (1, 2), (1, 1), (3, 1)];
 
 /// Returns the picture of the given faces and levels.
-pub(super) fn picture(opened: &Opened, faces: Range<u32>, levels: Range<u32>) -> Rgba {
+pub(super) fn picture(opened: &TextureSource, faces: Range<u32>, levels: Range<u32>) -> Rgba {
     let levels: Vec<Rgba> = levels.map(|level| of_level(opened, &faces, level)).collect();
     let Some((first, rest)) = levels.split_first() else { return empty(1, 1) };
     let column = rest.iter().map(|level| level.width()).max().unwrap_or(0);
@@ -31,11 +31,11 @@ pub(super) fn picture(opened: &Opened, faces: Range<u32>, levels: Range<u32>) ->
 }
 
 /// Returns the picture of one level: a face, the cross of its faces, or its layers.
-fn of_level(opened: &Opened, faces: &Range<u32>, level: u32) -> Rgba {
+fn of_level(opened: &TextureSource, faces: &Range<u32>, level: u32) -> Rgba {
     let show = |face: u32| {
         let shown = show::level(&opened.texels, opened.format, &opened.palette, opened.dithered, face, level);
         // The caller has checked that face and level exist.
-        shown.map_or_else(|| empty(1, 1), |Shown { width, pixels, .. }| Rgba::new(width, pixels))
+        shown.map_or_else(|| empty(1, 1), |LevelPicture { width, pixels, .. }| Rgba::new(width, pixels))
     };
     if faces.len() == 1 {
         return show(faces.start);

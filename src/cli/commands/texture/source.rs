@@ -15,7 +15,7 @@ use super::{Arguments, Context, Failure};
 use crate::commands::scene::{StateArguments, load, load_to_draw};
 
 /// A texture and how it is read.
-pub(super) struct Opened {
+pub(super) struct TextureSource {
     /// Name, as given on the command line.
     pub(super) name: String,
     pub(super) kind: TextureKind,
@@ -29,7 +29,7 @@ pub(super) struct Opened {
     pub(super) target: Option<String>,
 }
 
-impl Opened {
+impl TextureSource {
     /// Returns the number of faces of a cube map, or of layers otherwise.
     pub(super) fn faces(&self) -> u32 {
         if self.kind == TextureKind::Cube { CUBE_FACES } else { self.texels.layers }
@@ -37,7 +37,7 @@ impl Opened {
 }
 
 /// Reads the texture.
-pub(super) fn open(arguments: &Arguments, context: Context) -> Result<Opened, Failure> {
+pub(super) fn open(arguments: &Arguments, context: Context) -> Result<TextureSource, Failure> {
     let name = shown::lossless(Path::new(&arguments.texture));
     if let Some(end) = name.find(".ron:") {
         return of_scene(arguments, name, end + ".ron".len(), context);
@@ -56,7 +56,7 @@ fn advice(scene: &Scene, file: &str) -> String {
     if names.is_empty() { "it has none".to_owned() } else { format!("write {}", names.join(" or ")) }
 }
 
-fn of_file(arguments: &Arguments, path: &Path, name: String) -> Result<Opened, Failure> {
+fn of_file(arguments: &Arguments, path: &Path, name: String) -> Result<TextureSource, Failure> {
     if arguments.palette.is_some() {
         return Err(Failure::usage("`--palette` names a palette of a scene", "name a texture as SCENE.ron:NAME"));
     }
@@ -90,7 +90,7 @@ fn of_file(arguments: &Arguments, path: &Path, name: String) -> Result<Opened, F
         }
     };
     let palette = palette.unwrap_or_default().into();
-    Ok(Opened { name, kind, format, texels, palette, dithered, target: None })
+    Ok(TextureSource { name, kind, format, texels, palette, dithered, target: None })
 }
 
 /// Returns the kind of a 2D texture: a rectangle unless both sides are powers of two.
@@ -100,7 +100,7 @@ fn plain_kind(width: u32, height: u32) -> TextureKind {
 }
 
 /// Opens a texture of a scene. `end` is the position of the colon in `name`.
-fn of_scene(arguments: &Arguments, name: String, end: usize, context: Context) -> Result<Opened, Failure> {
+fn of_scene(arguments: &Arguments, name: String, end: usize, context: Context) -> Result<TextureSource, Failure> {
     let (path, texture) = (Path::new(&name[..end]), &name[end + 1..]);
     if arguments.profile.is_some() || arguments.format.is_some() {
         let help = "leave out `--profile` and `--format`";
@@ -128,7 +128,7 @@ fn of_scene(arguments: &Arguments, name: String, end: usize, context: Context) -
             (Texels { width, height, levels: 1, layers: 1, border: false, words }, Some(name))
         }
     };
-    Ok(Opened {
+    Ok(TextureSource {
         name,
         kind: texture.kind,
         format: texture.format,

@@ -1,14 +1,14 @@
 //! Report for GitHub Actions: annotations on files, and a step summary.
 
-use crate::replay::{Outcome, Replayed, Summary};
+use crate::replay::{Outcome, SceneReplay, Summary};
 use ninebit::shown;
 
 /// Number of annotations of one kind that GitHub keeps for a step.
 const MAX_ANNOTATIONS: usize = 10;
 
 /// Returns lines that GitHub Actions turns into annotations: an error for each scene that is not as expected, ten at most, because GitHub drops more.
-pub(crate) fn annotations(all: &[Replayed]) -> String {
-    let wrong: Vec<&Replayed> = all.iter().filter(|one| one.exit_code() != 0).collect();
+pub(crate) fn annotations(all: &[SceneReplay]) -> String {
+    let wrong: Vec<&SceneReplay> = all.iter().filter(|one| one.exit_code() != 0).collect();
     let shown = if wrong.len() > MAX_ANNOTATIONS { MAX_ANNOTATIONS - 1 } else { wrong.len() };
     let mut out: String = wrong.iter().take(shown).map(|one| annotation(one)).collect();
     if wrong.len() > shown {
@@ -18,7 +18,7 @@ pub(crate) fn annotations(all: &[Replayed]) -> String {
     out
 }
 
-fn annotation(one: &Replayed) -> String {
+fn annotation(one: &SceneReplay) -> String {
     let place = match &one.outcome {
         Outcome::Failed(problem) => {
             problem.place.map_or(String::new(), |(line, column)| format!(",line={line},col={column}"))
@@ -45,7 +45,7 @@ fn property(text: &str) -> String {
 }
 
 /// Returns the step summary as Markdown: the counts, and a table of the scenes that are not as expected.
-pub(crate) fn step_summary(all: &[Replayed]) -> String {
+pub(crate) fn step_summary(all: &[SceneReplay]) -> String {
     let mut out = format!("### ninebit replay\n\n{}\n", Summary::from_replays(all));
     let mut rows = all.iter().filter(|one| one.exit_code() != 0).peekable();
     if rows.peek().is_some() {

@@ -6,7 +6,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::page::{head, source_hash};
 use crate::replay::panels::{GAP, opaque};
-use crate::replay::{Comparison, Difference, Origin, Outcome, Replayed, Summary, Traces};
+use crate::replay::{Comparison, Difference, Origin, Outcome, SceneReplay, Summary, Traces};
 use ninebit::shown;
 use ninebit_report::SideBySideLine;
 use ninebit_scene::diff::{CHANNELS, Histogram, ranges};
@@ -15,9 +15,9 @@ const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("report.js");
 
 /// Returns a page with all details of the scenes that are not as expected, and a list of all scenes. Pictures are embedded.
-pub fn html(all: &[Replayed]) -> String {
+pub fn html(all: &[SceneReplay]) -> String {
     let summary = Summary::from_replays(all);
-    let wrong: Vec<&Replayed> = all.iter().filter(|one| one.exit_code() != 0).collect();
+    let wrong: Vec<&SceneReplay> = all.iter().filter(|one| one.exit_code() != 0).collect();
     let style = STYLE.to_owned() + &wrong.iter().enumerate().map(|(n, one)| shape(n, one)).collect::<String>();
     let (script, styled) = (source_hash(SCRIPT), source_hash(&style));
     let policy = format!(
@@ -55,13 +55,13 @@ pub fn html(all: &[Replayed]) -> String {
     page.into_string() + "\n"
 }
 
-fn status(one: &Replayed) -> Markup {
+fn status(one: &SceneReplay) -> Markup {
     html! { span class={ "status " (one.status()) } { (one.status()) } }
 }
 
 /// Returns the rules that give a scene's figure the shape of its pictures. Each title is as wide as its panel; a tall picture is narrower than the
 /// page, but wide enough for its titles.
-fn shape(n: usize, one: &Replayed) -> String {
+fn shape(n: usize, one: &SceneReplay) -> String {
     let Outcome::Differs(difference) = &one.outcome else { return String::new() };
     let Some(known) = &difference.known else { return String::new() };
     let (width, height) = (known.difference.width, known.difference.height);
@@ -73,7 +73,7 @@ fn shape(n: usize, one: &Replayed) -> String {
     )
 }
 
-fn scene(n: usize, one: &Replayed) -> Markup {
+fn scene(n: usize, one: &SceneReplay) -> Markup {
     html! {
         section id=(shown::name(&one.name)) {
             h2 { (shown::name(&one.name)) " " (status(one)) }

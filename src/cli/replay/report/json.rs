@@ -2,12 +2,12 @@
 
 use serde_json::{Value, json};
 
-use crate::replay::{Cause, Comparison, Difference, Origin, Outcome, Problem, Replayed, Summary};
+use crate::replay::{Cause, Comparison, Difference, Origin, Outcome, Problem, SceneReplay, Summary};
 use ninebit::shown;
 use ninebit_scene::diff::{Bucket, CHANNELS, Histogram};
 
 /// Returns the report as a JSON document; `docs/ci.md` describes it.
-pub fn json(all: &[Replayed]) -> String {
+pub fn json(all: &[SceneReplay]) -> String {
     let summary = Summary::from_replays(all);
     let document = json!({
         "format": "ninebit-replay-1",
@@ -21,7 +21,7 @@ pub fn json(all: &[Replayed]) -> String {
     format!("{}\n", shown::json(&format!("{document:#}")))
 }
 
-fn scene(one: &Replayed) -> Value {
+fn scene(one: &SceneReplay) -> Value {
     let (difference, problem) = match &one.outcome {
         Outcome::Differs(difference) => (Some(self::difference(difference)), None),
         Outcome::Failed(problem) => (None, Some(self::problem(problem))),

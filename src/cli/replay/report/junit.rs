@@ -5,18 +5,18 @@ use std::io;
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesText, Event};
 
-use crate::replay::{Outcome, Replayed, Summary};
+use crate::replay::{Outcome, SceneReplay, Summary};
 use ninebit::shown;
 
 /// Returns one test case for each scene: its folder is the class, its verdict the message. The text is empty if the writer fails, which it does not
 /// in memory.
-pub(crate) fn junit(all: &[Replayed]) -> String {
+pub(crate) fn junit(all: &[SceneReplay]) -> String {
     let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
     let written = write(&mut writer, all).map(|()| writer.into_inner());
     written.ok().and_then(|bytes| String::from_utf8(bytes).ok()).map_or(String::new(), |text| text + "\n")
 }
 
-fn write(writer: &mut Writer<Vec<u8>>, all: &[Replayed]) -> io::Result<()> {
+fn write(writer: &mut Writer<Vec<u8>>, all: &[SceneReplay]) -> io::Result<()> {
     let summary = Summary::from_replays(all);
     let errors = all.iter().filter(|one| matches!(one.outcome, Outcome::Failed(_))).count();
     let counts =
@@ -35,7 +35,7 @@ fn write(writer: &mut Writer<Vec<u8>>, all: &[Replayed]) -> io::Result<()> {
     Ok(())
 }
 
-fn case(writer: &mut Writer<Vec<u8>>, one: &Replayed) -> io::Result<()> {
+fn case(writer: &mut Writer<Vec<u8>>, one: &SceneReplay) -> io::Result<()> {
     let (folder, name) = one.name.rsplit_once('/').unwrap_or(("", &one.name));
     let (folder, name, path) = (shown::name(folder), shown::name(name), shown::path(&one.path));
     let (message, code) = (one.message(), one.exit_code().to_string());

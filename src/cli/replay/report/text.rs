@@ -2,18 +2,18 @@
 
 use std::fmt::Write;
 
-use crate::replay::{Outcome, Replayed, Summary};
+use crate::replay::{Outcome, SceneReplay, Summary};
 use ninebit::shown;
 
 /// Returns one line for each scene that is not as expected, the full messages of those that failed, and the counts.
-pub fn text(all: &[Replayed]) -> String {
+pub fn text(all: &[SceneReplay]) -> String {
     let mut out = String::new();
     // Writing to a string cannot fail.
     let _ = write(&mut out, all);
     out
 }
 
-fn write(out: &mut String, all: &[Replayed]) -> std::fmt::Result {
+fn write(out: &mut String, all: &[SceneReplay]) -> std::fmt::Result {
     for one in all {
         match &one.outcome {
             Outcome::Match => {}

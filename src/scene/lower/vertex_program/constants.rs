@@ -3,7 +3,7 @@
 use super::*;
 use ninebit::vertex::shader::{CONSTANTS, Opcode, SourceRegister};
 
-type Program = (Written, ProgramText);
+type Program = (ShaderText, ProgramText);
 /// An entry of the scene's constants: its place, its first register, and its number of registers.
 type Entry = (Span, usize, usize);
 

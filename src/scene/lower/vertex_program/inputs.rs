@@ -57,7 +57,7 @@ pub(super) fn sources<'a>(
     reader: &mut Reader<'a>,
     raw: &Option<Raw<'a, source::ShaderInputs<'a>>>,
     given: &VertexOrigin,
-    (written, text): (&Written, &ProgramText),
+    (written, text): (&ShaderText, &ProgramText),
 ) -> Vec<Input> {
     let mut fields = [None; INPUTS];
     for (name, text) in raw.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default().written() {
