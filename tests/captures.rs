@@ -2,14 +2,14 @@
 
 use ninebit::engine::{Engine, RenderOptions};
 use ninebit::state::Policies;
-use ninebit_vectors::captures::{self, SIZE};
+use ninebit_captures::SIZE;
 use rayon::prelude::*;
 
 /// Tests a sample of all suites. `ninebit captures check` compares all frames.
 #[test]
 fn every_frame_is_exact() {
-    let frames = captures::frames(&[]).unwrap_or_else(|unmatched| panic!("{unmatched:#?}"));
-    let frames = captures::sample(frames, 300);
+    let frames = ninebit_captures::frames(&[]).unwrap_or_else(|unmatched| panic!("{unmatched:#?}"));
+    let frames = ninebit_captures::sample(frames, 300);
     let wrong: Vec<String> = frames
         .par_iter()
         .enumerate()
@@ -23,23 +23,23 @@ fn every_frame_is_exact() {
         })
         .collect();
     assert!(wrong.is_empty(), "{} of {} frames differ: {wrong:#?}", wrong.len(), frames.len());
-    let compared: u64 = frames.iter().map(captures::Frame::compared).sum();
+    let compared: u64 = frames.iter().map(ninebit_captures::Frame::compared).sum();
     println!("{} frames, {compared} pixels", frames.len());
 }
 
 /// A sample contains frames of every suite, none of them twice. If more frames are asked for than there are, it contains all of them.
 #[test]
 fn samples_are_spread() {
-    let all = || captures::frames(&[]).unwrap();
-    let names = |frames: Vec<captures::Frame>| -> Vec<String> {
+    let all = || ninebit_captures::frames(&[]).unwrap();
+    let names = |frames: Vec<ninebit_captures::Frame>| -> Vec<String> {
         frames.iter().map(|frame| format!("{}/{}", frame.suite, frame.name)).collect()
     };
-    assert_eq!(names(captures::sample(all(), usize::MAX / 10_000)), names(all()));
-    let sample = captures::sample(all(), 300);
+    assert_eq!(names(ninebit_captures::sample(all(), usize::MAX / 10_000)), names(all()));
+    let sample = ninebit_captures::sample(all(), 300);
     assert!((300..370).contains(&sample.len()), "{}", sample.len());
     let mut suites: Vec<&str> = sample.iter().map(|frame| frame.suite).collect();
     suites.dedup();
-    assert_eq!(suites, captures::suites().collect::<Vec<_>>());
+    assert_eq!(suites, ninebit_captures::suites().collect::<Vec<_>>());
     let mut sorted = names(sample);
     sorted.sort_unstable();
     let count = sorted.len();
@@ -50,19 +50,22 @@ fn samples_are_spread() {
 /// No suite has more frames than were captured.
 #[test]
 fn suites_have_captured_frames() {
-    let all = captures::frames(&[]).unwrap();
-    for suite in captures::suites() {
+    let all = ninebit_captures::frames(&[]).unwrap();
+    for suite in ninebit_captures::suites() {
         let drawn = all.iter().filter(|frame| frame.suite == suite).count();
-        assert!(captures::captured().any(|(name, captured)| name == suite && drawn <= captured), "{suite}: {drawn}");
+        assert!(
+            ninebit_captures::captured().any(|(name, captured)| name == suite && drawn <= captured),
+            "{suite}: {drawn}"
+        );
     }
-    assert_eq!(captures::captured().map(|(_, captured)| captured).sum::<usize>(), 5606);
+    assert_eq!(ninebit_captures::captured().map(|(_, captured)| captured).sum::<usize>(), 5606);
 }
 
 /// Nothing but printed text is left out: every area lies within a line of the programs' text screen, whose characters of 16 rows stand 25 rows apart
 /// from row 25 on.
 #[test]
 fn only_printed_text_is_left_out() {
-    for frame in captures::frames(&[]).unwrap() {
+    for frame in ninebit_captures::frames(&[]).unwrap() {
         for area in &frame.text {
             let below = area.y.checked_sub(25).map(|y| y % 25);
             let is_line = below.is_some_and(|below| below + area.height <= 16);
@@ -75,7 +78,7 @@ fn only_printed_text_is_left_out() {
 /// A single changed pixel is noticed, except under the printed text, which is not compared.
 #[test]
 fn one_pixel_makes_a_difference() {
-    let frames = captures::frames(&["Stencil"]).unwrap();
+    let frames = ninebit_captures::frames(&["Stencil"]).unwrap();
     let frame = &frames[0];
     let mut pixels = frame.render(&RenderOptions::default(), Policies::DEFAULT).unwrap();
     assert!(frame.is(&pixels));
@@ -87,5 +90,5 @@ fn one_pixel_makes_a_difference() {
     pixels[last][3] ^= 1;
     assert!(!frame.is(&pixels));
     assert!(!frame.is(&pixels[..at]), "a part of the frame");
-    assert_eq!(captures::pixels(text).next(), Some(at));
+    assert_eq!(ninebit_captures::pixels(text).next(), Some(at));
 }

@@ -57,6 +57,7 @@ fn readmes_of_crates_show_an_example() {
         ("program", "src/program/examples/translate.rs"),
         ("report", "src/report/examples/trace.rs"),
         ("scene", "src/scene/examples/render.rs"),
+        ("captures", "src/captures/examples/frame.rs"),
         ("score", "src/score/examples/score.rs"),
         ("vectors", "src/vectors/examples/unit.rs"),
     ];

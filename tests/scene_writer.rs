@@ -16,11 +16,11 @@ use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::*;
 use ninebit::vertex::fog::passed;
+use ninebit_captures::Frame;
 use ninebit_files::texels;
 use ninebit_scene::assets::Bundle;
 use ninebit_scene::write::{self, SceneFiles, WriteOptions};
 use ninebit_scene::{self as scene, LoadedScene};
-use ninebit_vectors::captures::{self, Frame};
 use proptest::strategy::{Strategy, ValueTree};
 use rayon::prelude::*;
 use std::path::Path;
@@ -326,11 +326,11 @@ fn frames_return(frames: &[Frame]) {
 
 #[test]
 fn captured_frames_return() {
-    frames_return(&captures::sample(captures::frames(&[]).unwrap(), 150));
+    frames_return(&ninebit_captures::sample(ninebit_captures::frames(&[]).unwrap(), 150));
 }
 
 #[test]
 #[ignore = "a sample of them is compared above; all take minutes"]
 fn all_captured_frames_return() {
-    frames_return(&captures::frames(&[]).unwrap());
+    frames_return(&ninebit_captures::frames(&[]).unwrap());
 }

@@ -236,11 +236,11 @@ fn commands_and_exit_codes_are_listed() {
 /// Frames are left out of suites that are drawn.
 #[test]
 fn omitted_frames_are_of_known_suites() {
-    let suites: BTreeSet<&str> = ninebit_vectors::captures::suites().collect();
+    let suites: BTreeSet<&str> = ninebit_captures::suites().collect();
     for row in rows("docs/evidence/captures.md", "omitted") {
         for part in row[0].split("; ") {
             let name = part.split([' ', ',']).next().unwrap();
-            let is_captured = ninebit_vectors::captures::captured().any(|(suite, _)| suite == name);
+            let is_captured = ninebit_captures::captured().any(|(suite, _)| suite == name);
             assert!(
                 is_captured || suites.iter().any(|suite| suite.starts_with(name)) || row[0].contains("LargeZ"),
                 "{name}"

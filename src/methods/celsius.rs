@@ -71,7 +71,7 @@ pub(crate) fn constant(kelvin: u32) -> Option<u32> {
 }
 
 /// Reads state by Kelvin's number. `own` has the class's own words.
-pub(crate) fn known(kelvin: u32, own: impl Fn(u32) -> Option<u32>) -> StateWord {
+pub(crate) fn state_word(kelvin: u32, own: impl Fn(u32) -> Option<u32>) -> StateWord {
     let read = |number: u32| own(number).map_or(StateWord::Unset(number), StateWord::Word);
     let then = |known: StateWord, change: &dyn Fn(u32) -> u32| match known {
         StateWord::Word(word) => StateWord::Word(change(word)),
@@ -224,7 +224,7 @@ mod tests {
     use super::*;
 
     fn word(kelvin: u32, own: &[(u32, u32)]) -> StateWord {
-        known(kelvin, |number| own.iter().find(|(other, _)| *other == number).map(|(_, word)| *word))
+        state_word(kelvin, |number| own.iter().find(|(other, _)| *other == number).map(|(_, word)| *word))
     }
 
     #[test]

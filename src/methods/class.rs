@@ -207,7 +207,7 @@ fn row(family: Family, line: &'static str) -> Option<Method> {
 
 impl Family {
     /// Returns the family of a class; `None` if it is no 3D class that is followed.
-    pub fn of(class: u32) -> Option<Family> {
+    pub fn from_class(class: u32) -> Option<Family> {
         CLASSES.iter().find(|(number, _)| *number == class).map(|(_, family)| *family)
     }
 

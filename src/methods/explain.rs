@@ -34,7 +34,7 @@ pub fn settings(state: &State) -> Vec<Setting> {
             return None;
         }
         let kelvin = family.kelvin(&place);
-        let meaning = kelvin.and_then(|kelvin| match state.known(kelvin) {
+        let meaning = kelvin.and_then(|kelvin| match state.state_word(kelvin) {
             StateWord::Word(word) => meaning(kelvin, word),
             _ => None,
         });
@@ -177,7 +177,7 @@ mod tests {
     use super::*;
     use crate::class::{CELSIUS, KELVIN};
 
-    fn told(class: u32, words: &[(u32, u32)]) -> Vec<String> {
+    fn lines_of(class: u32, words: &[(u32, u32)]) -> Vec<String> {
         let mut state = State::default();
         words.iter().for_each(|(method, word)| state.assume(class, *method, *word));
         settings(&state).iter().map(ToString::to_string).collect()
@@ -200,8 +200,8 @@ mod tests {
             "0x0694 SET_COMPOSITE_MATRIX[5]               3f000000  0.5",
             "0x1b44 SET_TEXTURE_FORMAT[1]                 04410629  A8R8G8B8, 16 x 16, 1 levels",
         ];
-        assert_eq!(told(KELVIN, &words), expected);
-        let own = told(CELSIUS, &[(0x224, 0x0441_0000 | 6 << 7 | 1 << 12), (0x680, 0x3f80_0000)]);
+        assert_eq!(lines_of(KELVIN, &words), expected);
+        let own = lines_of(CELSIUS, &[(0x224, 0x0441_0000 | 6 << 7 | 1 << 12), (0x680, 0x3f80_0000)]);
         assert_eq!(own[0], "0x0224 TEX_FORMAT[1]                         04411300  A8R8G8B8, 2 x 16, 1 levels");
         assert_eq!(own[1], "0x0680 FOG_COEFF[0]                          3f800000  1.0");
     }

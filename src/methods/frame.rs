@@ -357,7 +357,7 @@ impl Builder {
         let image = image(view, index)?;
         let projects = shader::code(view, index) == class::STAGE_THREE;
         let mut state = unit(view, index, &image, projects);
-        state.texture = match self.shown(view, &image, target) {
+        state.texture = match self.target_texture(view, &image, target) {
             Some(texture) => texture,
             None => self.texture(view, memory, &image)?,
         };
@@ -386,7 +386,7 @@ impl Builder {
     }
 
     /// Returns the texture that shows a target of the frame, if the image is one.
-    fn shown(&mut self, view: &mut View<'_>, image: &Image, drawing: usize) -> Option<usize> {
+    fn target_texture(&mut self, view: &mut View<'_>, image: &Image, drawing: usize) -> Option<usize> {
         let color = self.known.iter().position(|known| known.surface.color == image.address && known.uses > 0);
         let depth = self
             .known

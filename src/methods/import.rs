@@ -84,7 +84,7 @@ const FAULTS: usize = 16;
 
 impl Summary {
     fn count(&mut self, line: u64, class: u32, method: u32, words: u64) {
-        let place = Family::of(class).and_then(|family| family.find(method));
+        let place = Family::from_class(class).and_then(|family| family.find(method));
         let number = place.map_or(method, |place| place.method.number);
         self.methods.entry((class, number)).or_insert(Use { count: 0, line }).count += words;
     }
@@ -92,7 +92,7 @@ impl Summary {
     /// Returns the number of words of 3D classes, or of their methods of a treatment.
     pub fn words(&self, treatment: Option<Treatment>) -> u64 {
         let treated = self.methods.iter().filter(|((class, method), _)| {
-            Family::of(*class).is_some_and(|family| {
+            Family::from_class(*class).is_some_and(|family| {
                 let found = family.find(*method).map_or(Treatment::Open, |place| place.method.treatment);
                 treatment.is_none_or(|treatment| treatment == found)
             })
@@ -263,7 +263,7 @@ pub fn combiner_words(bytes: &[u8], chip: Profile) -> Option<String> {
     let (mut reader, mut words) = (Reader::of_class(class), BTreeMap::new());
     let mut take = |entry: Entry| {
         if let Event::Write(Write { class, method, word }) = entry.event
-            && Family::of(class).is_some_and(|family| family.profile() == chip)
+            && Family::from_class(class).is_some_and(|family| family.profile() == chip)
             && RegisterWord::of_method(method, chip).is_some()
         {
             words.insert(method, word);
@@ -303,7 +303,7 @@ pub fn assume(state: &mut State, class: u32, text: &str) -> Result<Vec<u32>, Ass
         reader.feed(line.as_bytes(), &mut take);
         reader.finish(&mut take);
         if reader.unknown > 0 {
-            let named = named(line, Family::of(class).unwrap_or_default());
+            let named = named(line, Family::from_class(class).unwrap_or_default());
             let (method, word) = named.ok_or_else(|| AssumptionError { line: number + 1, text: line.to_owned() })?;
             writes = vec![Write { class, method, word }];
         }

@@ -140,16 +140,16 @@ impl State {
     }
 
     /// Returns what is known of a state, by Kelvin's number.
-    pub(crate) fn known(&self, kelvin: u32) -> StateWord {
+    pub(crate) fn state_word(&self, kelvin: u32) -> StateWord {
         match self.family() {
             Family::Kelvin => self.get(kelvin).map_or(StateWord::Unset(kelvin), StateWord::Word),
-            Family::Celsius => celsius::known(kelvin, |number| self.get(number)),
+            Family::Celsius => celsius::state_word(kelvin, |number| self.get(number)),
         }
     }
 
     /// Takes the family of a class; returns whether the class is of the log's family.
     fn is_of(&mut self, class: u32) -> bool {
-        let family = Family::of(class);
+        let family = Family::from_class(class);
         family.is_some() && *self.family.get_or_insert(family.unwrap_or_default()) == family.unwrap_or_default()
     }
 
@@ -292,7 +292,7 @@ impl State {
         let value = &mut self.attributes[attribute];
         kind.put(value, at, word);
         self.known_attributes |= 1 << attribute;
-        let flag = self.known(class::SET_EDGE_FLAG);
+        let flag = self.state_word(class::SET_EDGE_FLAG);
         if attribute == 0
             && last
             && let Some(batch) = &mut self.batch

@@ -1,7 +1,6 @@
 //! One frame: what differs.
 
 use ninebit_scene::image::Rgba;
-use ninebit_vectors::captures;
 
 use crate::search::{self, Explanation};
 use crate::subject::Subject;
@@ -85,7 +84,7 @@ pub(crate) fn same(a: [u8; 4], b: [u8; 4]) -> bool {
 /// Returns which pixels are compared.
 fn outside_of_text(subject: &Subject, pixels: usize) -> Vec<bool> {
     let mut outside = vec![true; pixels];
-    for at in subject.text.iter().flat_map(captures::pixels) {
+    for at in subject.text.iter().flat_map(ninebit_captures::pixels) {
         if let Some(outside) = outside.get_mut(at) {
             *outside = false;
         }

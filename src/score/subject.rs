@@ -6,7 +6,7 @@ use ninebit::engine::RenderOptions;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::shortcut::{self, Mask, Shortcuts};
 use ninebit::state::{Policies, Rectangle, Scene};
-use ninebit_vectors::captures::{self, Frame, FrameMismatch, PreparedFrame};
+use ninebit_captures::{Frame, FrameMismatch, PreparedFrame};
 
 /// A frame that the model draws.
 pub trait Drawing: Send + Sync {
@@ -78,8 +78,10 @@ impl std::fmt::Debug for Subject {
 /// # Errors
 /// The table of frames and the drawn frames do not meet.
 pub fn captured(folder: &Path, pictures: &[(String, String)]) -> Result<Vec<Subject>, FrameMismatch> {
-    let mut frames: std::collections::BTreeMap<(String, String), Frame> =
-        captures::frames(&[])?.into_iter().map(|frame| ((frame.suite.to_owned(), frame.name.clone()), frame)).collect();
+    let mut frames: std::collections::BTreeMap<(String, String), Frame> = ninebit_captures::frames(&[])?
+        .into_iter()
+        .map(|frame| ((frame.suite.to_owned(), frame.name.clone()), frame))
+        .collect();
     let subject = |(suite, name): &(String, String)| {
         let frame = frames.remove(&(suite.clone(), name.clone()));
         let text = frame.as_ref().map_or_else(Vec::new, |frame| frame.text.clone());

@@ -3,7 +3,6 @@
 //! A [`Unit`] is a function of the model between named columns of integers. [`cases`] selects rows, [`table`] writes tables and [`read`] reads them,
 //! and [`pack`] exports the tables of many units to a folder with a manifest and opens such a folder.
 
-pub mod captures;
 pub mod cases;
 pub mod column;
 mod digest;

@@ -8,7 +8,7 @@ use std::fmt::Write;
 
 use ninebit::plan::PlanError;
 use ninebit::threads::on_threads;
-use ninebit_vectors::captures::{self, Frame, SIZE, SOURCE};
+use ninebit_captures::{Frame, SIZE, SOURCE};
 use rayon::prelude::*;
 
 use ninebit_scene::diff::{self, Difference, Options};
@@ -65,7 +65,7 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
 }
 
 fn frames(suites: &[&str]) -> Result<Vec<Frame>, Failure> {
-    captures::frames(suites).map_err(|unmatched| Failure::fault(&unmatched.to_string()))
+    ninebit_captures::frames(suites).map_err(|unmatched| Failure::fault(&unmatched.to_string()))
 }
 
 fn list() -> Result<(), Failure> {
@@ -75,10 +75,10 @@ fn list() -> Result<(), Failure> {
         let exact = drawn.iter().filter(|frame| frame.open.is_none()).count();
         let _ = writeln!(text, "{suite:<34}{captured:>8}{:>8}{exact:>8}", drawn.len());
     };
-    for (suite, captured) in captures::captured() {
+    for (suite, captured) in ninebit_captures::captured() {
         line(suite, captured, &all.iter().filter(|frame| frame.suite == suite).collect::<Vec<_>>());
     }
-    line("all", captures::captured().map(|(_, captured)| captured).sum(), &all.iter().collect::<Vec<_>>());
+    line("all", ninebit_captures::captured().map(|(_, captured)| captured).sum(), &all.iter().collect::<Vec<_>>());
     Ok(write_text(&text)?)
 }
 
@@ -91,7 +91,7 @@ struct Outcome {
 }
 
 fn check(arguments: &CheckArguments) -> Result<(), Failure> {
-    let known: Vec<&str> = captures::suites().collect();
+    let known: Vec<&str> = ninebit_captures::suites().collect();
     if let Some(unknown) = arguments.suites.iter().find(|suite| !known.contains(&suite.as_str())) {
         let help = format!("the suites are {}", known.join(", "));
         return Err(Failure::usage(format!("there is no suite `{}`", shown::name(unknown)), help));
@@ -102,7 +102,7 @@ fn check(arguments: &CheckArguments) -> Result<(), Failure> {
     let outcomes: Vec<Outcome> = on_threads(arguments.engine.threads, || {
         let mut frames = frames(&suites)?;
         if let Some(count) = arguments.sample {
-            frames = captures::sample(frames, count);
+            frames = ninebit_captures::sample(frames, count);
         }
         let captures = arguments.captures.as_deref();
         let drawn = frames.into_par_iter().map(|frame| draw(frame, &options, policies, captures));
@@ -147,9 +147,9 @@ fn draw(frame: Frame, options: &RenderOptions, policies: Policies, folder: Optio
     }
     // Printed letters are copied, so that they are equal.
     let mut masked = Rgba::new(SIZE.0, pixels);
-    for at in outcome.frame.text.iter().flat_map(captures::pixels) {
+    for at in outcome.frame.text.iter().flat_map(ninebit_captures::pixels) {
         let captured = capture.pixels()[at];
-        if captured == captures::LETTERS {
+        if captured == ninebit_captures::LETTERS {
             masked.pixels_mut()[at] = captured;
         }
     }
@@ -165,7 +165,7 @@ fn draw(frame: Frame, options: &RenderOptions, policies: Policies, folder: Optio
 
 fn text(outcomes: &[Outcome], has_captures: bool) -> String {
     let mut text = format!("{:<32}frames   exact         pixels\n", "suite");
-    for suite in captures::suites() {
+    for suite in ninebit_captures::suites() {
         let of: Vec<&Outcome> = outcomes.iter().filter(|outcome| outcome.frame.suite == suite).collect();
         if of.is_empty() {
             continue;

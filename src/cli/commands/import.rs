@@ -87,7 +87,7 @@ fn addresses(text: &str) -> Result<(u64, u64), String> {
 
 fn class_number(text: &str) -> Result<u32, String> {
     let number = u32::from_str_radix(text.trim_start_matches("0x"), 16).ok();
-    number.filter(|class| Family::of(*class).is_some()).ok_or_else(|| {
+    number.filter(|class| Family::from_class(*class).is_some()).ok_or_else(|| {
         let known = class::CLASSES.iter().map(|(class, _)| format!("0x{class:x}")).collect::<Vec<_>>();
         format!("a class that is followed is needed: {}", known.join(", "))
     })
@@ -376,7 +376,7 @@ fn summary_text(summary: &Summary, written: &[(String, bool)], compared: &[(Stri
     }
     let mut classes: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for ((class_number, method), used) in &summary.methods {
-        let family = Family::of(*class_number);
+        let family = Family::from_class(*class_number);
         let place = family.and_then(|family| family.find(*method));
         let (kind, name, note) = match place {
             Some(place) => (place.method.treatment.summary(), place.method.name.to_owned(), place.method.note),

@@ -24,7 +24,6 @@ use ninebit::plan::{Plan, PlanOptions};
 use ninebit::random::Random;
 use ninebit::state::{Policies, Scene};
 use ninebit_test_support::random_scene;
-use ninebit_vectors::captures;
 use proptest::strategy::{Strategy, ValueTree};
 use setting::{GLSL_COMPILER, any_policies, compiler, python, runner, setting, works};
 
@@ -133,7 +132,7 @@ fn printed_c_draws_captured_scenes() {
     }
     let step = setting("NINEBIT_WHOLE_FRAMES").unwrap_or(1501) as usize;
     let mut drawn = 0;
-    for frame in captures::frames(&[]).unwrap().into_iter().step_by(step) {
+    for frame in ninebit_captures::frames(&[]).unwrap().into_iter().step_by(step) {
         let scene = frame.scene(&RenderOptions::default()).unwrap();
         // Some programs only clear.
         let Some(scene) = scene.filter(|scene| !scene.draws.is_empty()) else { continue };

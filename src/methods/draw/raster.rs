@@ -184,7 +184,7 @@ fn fog(view: &mut View<'_>) -> Fog {
 fn window_clip(view: &mut View<'_>) -> Option<WindowClip> {
     let words: Vec<[Option<u32>; 2]> = (0..8)
         .map(|n| {
-            [class::SET_WINDOW_CLIP_HORIZONTAL, class::SET_WINDOW_CLIP_VERTICAL].map(|first| view.known(first + 4 * n))
+            [class::SET_WINDOW_CLIP_HORIZONTAL, class::SET_WINDOW_CLIP_VERTICAL].map(|first| view.word(first + 4 * n))
         })
         .collect();
     let exclusive = view.get_or(class::SET_WINDOW_CLIP_TYPE, 0) & 1 != 0;
@@ -266,7 +266,7 @@ fn tests(view: &mut View<'_>, depth: DepthFormat, control: u32, draw: &mut Draw)
 }
 
 fn depth_range(view: &mut View<'_>, depth: DepthFormat) -> Option<DepthRange> {
-    let (lowest, highest) = (view.known(class::SET_CLIP_MIN)?, view.known(class::SET_CLIP_MAX)?);
+    let (lowest, highest) = (view.word(class::SET_CLIP_MIN)?, view.word(class::SET_CLIP_MAX)?);
     let (lowest, highest) = (f32::from_bits(lowest), f32::from_bits(highest));
     let control = view.get_or(class::SET_ZMIN_MAX_CONTROL, 1);
     let most = if depth.is_float() { f64::from(f32::MAX) } else { f64::from(depth.largest()) };

@@ -40,7 +40,7 @@ pub(crate) fn vertices_of(
         view.note(Gap::TooMany("the draw has more vertices than a scene may have; the rest is left out".into()));
     }
     let stage = Stage::read(view);
-    let (attributes, indices) = given(view, memory, batch, &stage.reads());
+    let (attributes, indices) = attributes_and_indices(view, memory, batch, &stage.reads());
     let mut transform = stage;
     let outputs: Vec<Outputs> = attributes.iter().map(|attributes| transform.run(attributes)).collect();
     let points = draw.topology == ninebit::state::Topology::Points;
@@ -102,7 +102,7 @@ impl Stage {
         if view.get(class::SET_TRANSFORM_EXECUTION_MODE) & 3 == 2 {
             return Stage::Program(Box::new(program(view)));
         }
-        let fixed = FixedFunction::read(view.family().profile(), &mut |method| view.known(method));
+        let fixed = FixedFunction::read(view.family().profile(), &mut |method| view.word(method));
         for method in &fixed.missing {
             view.missing(*method);
         }
@@ -221,7 +221,7 @@ fn ranges(numbers: impl Iterator<Item = usize>) -> Vec<(u32, u32)> {
 }
 
 /// Returns the attributes of the vertices, and the indices that the primitives have.
-fn given(
+fn attributes_and_indices(
     view: &mut View<'_>,
     memory: &Memory,
     batch: &Batch,

@@ -59,7 +59,7 @@ impl<'a> View<'a> {
 
     /// Returns a word, by Kelvin's number. One that is not known is noted.
     pub(crate) fn get(&mut self, method: u32) -> u32 {
-        self.known(method).unwrap_or_else(|| {
+        self.word(method).unwrap_or_else(|| {
             self.missing(method);
             neutral(method)
         })
@@ -75,12 +75,12 @@ impl<'a> View<'a> {
 
     /// Returns a word, or a value that the chip certainly has where nothing was set.
     pub(crate) fn get_or(&self, method: u32, otherwise: u32) -> u32 {
-        self.known(method).unwrap_or(otherwise)
+        self.word(method).unwrap_or(otherwise)
     }
 
     /// Returns a word if it is known.
-    pub(crate) fn known(&self, method: u32) -> Option<u32> {
-        match self.state.known(method) {
+    pub(crate) fn word(&self, method: u32) -> Option<u32> {
+        match self.state.state_word(method) {
             StateWord::Word(word) => Some(word),
             _ => None,
         }
@@ -105,7 +105,7 @@ impl<'a> View<'a> {
 
     /// Notes a word that is missing, by Kelvin's number.
     pub(crate) fn missing(&mut self, method: u32) {
-        match self.state.known(method) {
+        match self.state.state_word(method) {
             StateWord::Unset(number) => _ = self.unset.insert(number),
             StateWord::Word(_) => {}
             StateWord::Absent => {

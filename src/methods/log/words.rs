@@ -84,7 +84,7 @@ impl Words {
     pub fn data(&mut self, word: u32) -> Write {
         if self.method == 0 {
             // The object's class is in the low bits where a driver names objects by their class; any other handle leaves the 3D class.
-            let named = if Family::of(word & 0xff).is_some() { word & 0xff } else { word };
+            let named = if Family::from_class(word & 0xff).is_some() { word & 0xff } else { word };
             self.classes[self.subchannel] = if named > 0xff { self.class } else { named };
         }
         let write = Write { class: self.classes[self.subchannel], method: self.method, word };

@@ -14,7 +14,6 @@ use ninebit_methods::import::{Options, import};
 use ninebit_methods::memory::Memory;
 use ninebit_methods::state::State;
 use ninebit_test_support::frames::difference;
-use ninebit_vectors::captures;
 use rayon::prelude::*;
 
 /// Returns the scene that a log of methods states.
@@ -146,9 +145,9 @@ impl std::fmt::Display for Report {
 /// The frames that are stated for captures: a sample, or with `NINEBIT_ROUND_TRIP=1` all.
 #[test]
 fn captured_frames_come_back() {
-    let frames = captures::frames(&[]).unwrap();
+    let frames = ninebit_captures::frames(&[]).unwrap();
     let all = std::env::var("NINEBIT_ROUND_TRIP").is_ok();
-    let frames = if all { frames } else { captures::sample(frames, 60) };
+    let frames = if all { frames } else { ninebit_captures::sample(frames, 60) };
     let count = frames.len();
     let trips = frames.into_par_iter().enumerate().map(|(number, frame)| {
         let name = format!("{}/{}", frame.suite, frame.name);

@@ -34,7 +34,7 @@ fn find(wanted: &str) -> Result<Frame, Failure> {
         Failure::usage(message, help)
     };
     let (suite, name) = wanted.split_once('/').unwrap_or((wanted, ""));
-    if !captures::suites().any(|known| known == suite) {
+    if !ninebit_captures::suites().any(|known| known == suite) {
         return Err(unknown("write SUITE/FRAME; `ninebit captures list` names the suites".to_owned()));
     }
     let mut of_suite = frames(&[suite])?;

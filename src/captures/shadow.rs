@@ -98,7 +98,7 @@ fn compared(canvas: &mut Canvas, edges: [f32; 4], w: f32, shadow: ShadowComparis
 const REFERENCES: [(ShadowReference, u8); 2] = [(ShadowReference::R, 3), (ShadowReference::Zero, 2)];
 
 /// Adds the frames whose depth words are given.
-fn given(frames: &mut Frames) {
+fn depth_words(frames: &mut Frames) {
     for (format, bits, values) in RANGES {
         let memory = words(format, values);
         let texels = memory.iter().map(|word| if bits == 24 { word.rotate_right(8) } else { *word });
@@ -191,7 +191,7 @@ impl Path {
 
 /// Adds the frames of Texture_shadow_comparator.
 pub(super) fn frames(frames: &mut Frames) {
-    given(frames);
+    depth_words(frames);
     for (format, bits, deepest, ranges) in DRAWN {
         for (is_program, letter) in [(false, 'F'), (true, 'P')] {
             for [least, greatest, mut z] in ranges {

@@ -49,7 +49,7 @@ fn keyed(unit: usize, place: Vec<[f32; 2]>, state: TextureUnit, combiners: Combi
     Draw { combiners, ..textured(draw, unit, state, corners([0.0, 0.0, 64.0, 64.0])) }
 }
 
-fn drawn(clear: u32, textures: Vec<Texture>, draws: Vec<Draw>) -> FrameDrawing {
+fn drawing(clear: u32, textures: Vec<Texture>, draws: Vec<Draw>) -> FrameDrawing {
     let scene: Scene = scene(vec![frame_buffer(clear)], textures, draws);
     FrameDrawing::colors(scene)
 }
@@ -82,7 +82,7 @@ pub(super) fn frames(frames: &mut Frames) {
                         draws.push(keyed(unit, square(center, offset), state, combiners));
                     }
                 }
-                frames.push(format!("{prefix}{kind}_{suffix}"), drawn(0xff00_cc00, textures.clone(), draws));
+                frames.push(format!("{prefix}{kind}_{suffix}"), drawing(0xff00_cc00, textures.clone(), draws));
             }
         }
     }
@@ -93,9 +93,9 @@ pub(super) fn frames(frames: &mut Frames) {
     let mut unread = keyed(0, square([1.6, 0.0], 0.0), texel(0, KEYS[0]), shown());
     unread.textures[1] = Some(texel(1, KEYS[1] | 0xff00_0000));
     unread.texture_shader[1] = ninebit::state::ShaderStage::conventional(1, true);
-    frames.push("UnsampledTex", drawn(0xff00_cc00, textures, vec![plain, unread]));
+    frames.push("UnsampledTex", drawing(0xff00_cc00, textures, vec![plain, unread]));
     let opposites = [0xcc00_ff00, 0x0000_ff00];
     let without_alpha = linear_texture(TextureFormat::X8R8G8B8, 64, |x, y| checker(x, y, opposites, 16));
     let draw = keyed(0, square([0.0, 0.0], 0.0), texel(0, 0xcc00_ff00), shown());
-    frames.push("XAlphaFormat", drawn(0xff99_9999, vec![without_alpha], vec![draw]));
+    frames.push("XAlphaFormat", drawing(0xff99_9999, vec![without_alpha], vec![draw]));
 }

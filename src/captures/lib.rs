@@ -1,4 +1,5 @@
-//! Captured frames of a real NV2A, drawn again by the model. This module holds what the programs drew; a table holds digests of what the chip showed.
+//! Captured frames of a real NV2A, drawn again by the model. This crate holds what the programs drew; a table holds digests of what the
+//! chip showed.
 //!
 //! The frames are those of [nxdk_pgraph_tests_golden_results](https://github.com/abaire/nxdk_pgraph_tests_golden_results) (CC0), drawn by the
 //! programs of [nxdk_pgraph_tests](https://github.com/abaire/nxdk_pgraph_tests) (MIT). `vectors/captures/frames.tsv` has a row for each frame: the

@@ -69,7 +69,7 @@ fn image() -> Texture {
 }
 
 /// Draws two triangles over a rectangle of the world. The matrix is multiplied by column vectors.
-fn shown(texture: &Texture, [top, bottom]: [f32; 2], mode: &str, matrix: &Matrix) -> FrameDrawing {
+fn drawing(texture: &Texture, [top, bottom]: [f32; 2], mode: &str, matrix: &Matrix) -> FrameDrawing {
     let vertex = |n: usize| {
         let [x, y] = corners([-2.75, top, 2.75, bottom])[n];
         let made = unit::transform(
@@ -89,7 +89,7 @@ fn shown(texture: &Texture, [top, bottom]: [f32; 2], mode: &str, matrix: &Matrix
 pub(super) fn generation(frames: &mut Frames) {
     let texture = image();
     for mode in MODES.into_iter().filter(|mode| *mode != "SphereMap") {
-        frames.push(mode, shown(&texture, [1.75, -1.75], mode, &IDENTITY));
+        frames.push(mode, drawing(&texture, [1.75, -1.75], mode, &IDENTITY));
     }
 }
 
@@ -98,7 +98,7 @@ pub(super) fn generation_and_matrices(frames: &mut Frames) {
     let texture = image();
     for mode in MODES {
         for (name, matrix) in matrices() {
-            frames.push(format!("{mode}_{name}"), shown(&texture, [1.0, -2.5], mode, &matrix));
+            frames.push(format!("{mode}_{name}"), drawing(&texture, [1.0, -2.5], mode, &matrix));
         }
     }
 }
@@ -107,6 +107,6 @@ pub(super) fn generation_and_matrices(frames: &mut Frames) {
 pub(super) fn texture_matrices(frames: &mut Frames) {
     let texture = image();
     for (name, matrix) in matrices() {
-        frames.push(name, shown(&texture, [1.0, -2.5], "Disabled", &matrix));
+        frames.push(name, drawing(&texture, [1.0, -2.5], "Disabled", &matrix));
     }
 }
