@@ -3,25 +3,27 @@
 //! `cbindgen` makes `include/ninebit.h` from this file; `docs/c.md` shows how it is used. Every function returns a status and writes its results
 //! through pointers. It checks pointers that may be null and lengths that may be wrong, and returns a status for both. No panic crosses the
 //! boundary. What one function allocates, another one frees. A scene never changes after it has been made, so any number of threads may use it at
-//! the same time. Whatever depends on a scene runs on a thread with a [stack of its own](STACK).
+//! the same time. Whatever depends on a scene runs on a thread with a [stack of its own](call::STACK).
+
+mod borrow;
+mod call;
 
 use std::ffi::{CStr, CString, c_char};
 use std::path::Path;
 use std::ptr;
-use std::thread;
 
 use ninebit::combiner::registers::Registers;
-
 use ninebit::engine::{self, RenderOptions};
-use ninebit::faults::{self, Operation};
 use ninebit::limits::Limits;
 use ninebit::shown;
 use ninebit::state::{Policies, Profile, Register};
 use ninebit::threads;
-use ninebit_files::catch_panic::{Panic, catch_panic};
 use ninebit_program::registers::{RegisterWords, Word, decode};
 use ninebit_report::trace_json;
-use ninebit_scene::{ErrorKind, LoadedScene, SceneError};
+use ninebit_scene::LoadedScene;
+
+use borrow::{array, array_mut, put, scene_of, text, text_of};
+use call::{Failure, call, on_own_stack};
 
 /// Status of a call. The numbers are the exit statuses of the program.
 #[repr(i32)]
@@ -79,151 +81,6 @@ pub struct NinebitMethod {
     pub method: u32,
     /// Word that is written to the method.
     pub word: u32,
-}
-
-/// The status and the message of a call that failed.
-struct Failure {
-    status: NinebitStatus,
-    text: String,
-}
-
-impl Failure {
-    fn argument(text: impl Into<String>) -> Failure {
-        Failure { status: NinebitStatus::Argument, text: text.into() }
-    }
-}
-
-impl From<SceneError> for Failure {
-    fn from(error: SceneError) -> Failure {
-        let status = match error.kind() {
-            ErrorKind::Invalid => NinebitStatus::Invalid,
-            ErrorKind::Missing => NinebitStatus::Missing,
-            ErrorKind::Limit => NinebitStatus::Limit,
-        };
-        Failure { status, text: error.render(false) }
-    }
-}
-
-/// Size of the stack on which scenes are read, drawn and traced, in bytes. The caller's may be small: threads of musl have 128 KiB. A render takes
-/// some 370 KiB of it, whatever it draws, and notation that is nested as deeply as it may be 50 KiB.
-const STACK: usize = 4 << 20;
-
-/// Code of the error that no thread can be started, which `docs/errors.md` lists.
-const NO_THREAD: &str = "NB0802";
-
-/// Runs `work` on a thread with [`STACK`], and waits for it.
-fn on_own_stack<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
-    thread::scope(|scope| {
-        let started = faults::check(Operation::Start).and_then(|()| {
-            thread::Builder::new().name("ninebit".to_owned()).stack_size(STACK).spawn_scoped(scope, work)
-        });
-        let started = started.map_err(|error| Failure {
-            status: NinebitStatus::Limit,
-            text: format!(
-                "error[{NO_THREAD}]: a thread cannot be started: {error}\n  help: let the process have more threads or memory\n"
-            ),
-        })?;
-        // `call` makes a panic a status.
-        Ok(started.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-    })
-}
-
-/// Runs a call. If it fails, returns its status and writes its message to `message`, unless that is null.
-fn call(message: *mut *mut c_char, work: impl FnOnce() -> Result<(), Failure>) -> NinebitStatus {
-    // SAFETY: the caller of every function promises that `message` is null or may be written.
-    unsafe { put(message, ptr::null_mut()) };
-    let failure = match catch_panic(work) {
-        Ok(Ok(())) => return NinebitStatus::Ok,
-        Ok(Err(failure)) => failure,
-        Err(panic) => Failure {
-            status: NinebitStatus::Internal,
-            text: format!("error[{}]: {panic}\n  help: {}\n", Panic::CODE, Panic::HELP),
-        },
-    };
-    // A text that nobody receives would never be freed.
-    if !message.is_null() {
-        // SAFETY: as above.
-        unsafe { put(message, text(failure.text)) };
-    }
-    failure.status
-}
-
-/// Writes through a pointer, unless it is null.
-///
-/// # Safety
-/// `place` is null or may be written.
-unsafe fn put<T>(place: *mut T, value: T) {
-    if !place.is_null() {
-        // SAFETY: the caller promises that it may be written, and it is not null.
-        unsafe { place.write(value) };
-    }
-}
-
-/// Allocates a text for C, which `ninebit_text_free` frees. A zero would end it, so zeros are replaced.
-fn text(text: String) -> *mut c_char {
-    CString::new(text.replace('\0', "\u{fffd}")).map_or(ptr::null_mut(), CString::into_raw)
-}
-
-/// Borrows a text of C; null and text that is not UTF-8 are errors.
-///
-/// # Safety
-/// `text` is null or points to bytes that end with a zero and live as long as the result is used.
-unsafe fn text_of<'a>(text: *const c_char, what: &str) -> Result<&'a str, Failure> {
-    if text.is_null() {
-        return Err(Failure::argument(format!("{what} is null")));
-    }
-    // SAFETY: the caller promises that it ends with a zero, and it is not null.
-    let text = unsafe { CStr::from_ptr(text) };
-    text.to_str().map_err(|_| Failure::argument(format!("{what} is not UTF-8")))
-}
-
-/// Borrows an array of C.
-///
-/// # Safety
-/// `first` is null, or points to `count` values that live and are not changed for as long as the result is used.
-unsafe fn array<'a, T>(first: *const T, count: usize, what: &str) -> Result<&'a [T], Failure> {
-    checked(first, count, what)?;
-    if count == 0 {
-        return Ok(&[]);
-    }
-    // SAFETY: it is not null, is aligned, and its bytes are no more than an isize holds; the caller promises the rest.
-    Ok(unsafe { std::slice::from_raw_parts(first, count) })
-}
-
-/// Borrows an array of C for writing.
-///
-/// # Safety
-/// `first` is null, or points to `count` values that may be written and are not used by anybody else for as long as the result is used.
-unsafe fn array_mut<'a, T>(first: *mut T, count: usize, what: &str) -> Result<&'a mut [T], Failure> {
-    checked(first, count, what)?;
-    if count == 0 {
-        return Ok(&mut []);
-    }
-    // SAFETY: as in `array`.
-    Ok(unsafe { std::slice::from_raw_parts_mut(first, count) })
-}
-
-/// Checks what can be known about an array without reading it.
-fn checked<T>(first: *const T, count: usize, what: &str) -> Result<(), Failure> {
-    if count == 0 {
-        return Ok(());
-    }
-    if first.is_null() || !first.is_aligned() {
-        return Err(Failure::argument(format!("{what} is null or not aligned")));
-    }
-    match count.checked_mul(size_of::<T>()) {
-        Some(bytes) if isize::try_from(bytes).is_ok() => Ok(()),
-        _ => Err(Failure::argument(format!("{what} cannot have {count} elements"))),
-    }
-}
-
-/// Borrows a scene of C; null is an error.
-///
-/// # Safety
-/// `scene` is null, or came from this library and has not been freed.
-unsafe fn scene_of<'a>(scene: *const NinebitScene) -> Result<&'a NinebitScene, Failure> {
-    // SAFETY: the caller promises that it is one of ours where it is not null; nobody ever changes one.
-    unsafe { scene.as_ref() }.ok_or_else(|| Failure::argument("the scene is null"))
 }
 
 /// Returns the version of the library, for example `0.1.0`. Do not free it.
@@ -522,6 +379,7 @@ const _: () = {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use ninebit::faults::{self, Operation};
     use std::sync::{Mutex, PoisonError};
 
     /// Held by tests that start threads, because a planted fault is the process's.
