@@ -10,6 +10,9 @@ use crate::adapter::TILE;
 
 const SIDE: i64 = TILE as i64;
 
+/// Words of a tile before the triangles of its rows.
+pub(crate) const TILE_WORDS: usize = TILE as usize + 2;
+
 /// Pixels of a tile, a bit for each, row by row.
 type Mask = [u32; 8];
 
@@ -20,8 +23,8 @@ enum Covered {
     ByRule,
     /// All of them.
     All,
-    /// Those of a mask, for lines, points, patterns and the edges of windows.
-    Mask(usize),
+    /// Those of the mask, for lines, points, patterns and the edges of windows.
+    ByMask,
 }
 
 /// A triangle in a tile.
@@ -30,6 +33,7 @@ struct Entry {
     tile: u32,
     triangle: u32,
     covered: Covered,
+    mask: Mask,
 }
 
 /// The triangles of a draw, or some of them, and where they may be seen.
@@ -40,7 +44,6 @@ pub(crate) struct Bins {
     /// Number of triangles.
     pub(crate) triangles: usize,
     entries: Vec<Entry>,
-    masks: Vec<Mask>,
 }
 
 /// Lists of tiles for the shader.
@@ -72,11 +75,11 @@ struct Place<'p> {
     size: [i64; 2],
 }
 
-/// Triangles of one dispatch: their constants stay below the least limit of a buffer's size, 128 MB.
+/// Triangles of one dispatch: their numbers have 16 bits, and their constants stay below the least limit of a buffer's size, 128 MB.
 const TRIANGLES: usize = 65_536;
 
-/// Tiles of the triangles of a dispatch, after which no triangle is added: with masks they stay below that limit.
-const TILES: usize = 1 << 21;
+/// Tiles of the triangles of a dispatch, after which no triangle is added: the rows of their masks stay below that limit.
+const TILES: usize = 1 << 20;
 
 /// Returns the triangles of a draw in groups for one dispatch each; `None` if they have more than `most` tiles. `fields` are the constants that the
 /// shader reads.
@@ -106,6 +109,7 @@ pub(crate) fn sorted(
             let constants = setup.constants(&context);
             let words = fields.iter().flat_map(|field| field.words(constants.get(field).copied().unwrap_or(0)));
             bins.constants.extend(words);
+            bins.constants.resize(bins.constants.len().next_multiple_of(4), 0);
             bins.triangles += 1;
         }
     }
@@ -141,13 +145,10 @@ impl Bins {
                     () if count == 0 => continue,
                     () if i64::from(count) == (end[0] - corner[0]) * (end[1] - corner[1]) => Covered::All,
                     () if is_plain && is_inside(0, columns) && is_inside(1, rows) => Covered::ByRule,
-                    () => {
-                        self.masks.push(mask);
-                        Covered::Mask(self.masks.len() - 1)
-                    }
+                    () => Covered::ByMask,
                 };
                 let tile = (row * across + column) as u32;
-                self.entries.push(Entry { tile, triangle: self.triangles as u32, covered });
+                self.entries.push(Entry { tile, triangle: self.triangles as u32, covered, mask });
             }
         }
     }
@@ -157,52 +158,52 @@ impl Bins {
         self.entries.len()
     }
 
-    /// Returns one list of tiles: for each its number, and where its triangles begin and end in the words; triangles with their coverage; masks.
+    /// Returns one list of tiles: for each its number, and where the triangles of its rows begin and end in the words. A triangle's number has its
+    /// pixels of that row in the upper half.
     pub(crate) fn tiles(&self) -> Tiles {
-        let mut entries = self.entries.clone();
+        let mut entries: Vec<&Entry> = self.entries.iter().collect();
         // Stable: triangles of a tile stay in order.
         entries.sort_by_key(|entry| entry.tile);
-        let tiles: Vec<&[Entry]> = entries.chunk_by(|a, b| a.tile == b.tile).collect();
+        let tiles: Vec<&[&Entry]> = entries.chunk_by(|a, b| a.tile == b.tile).collect();
+        let (first, mut rows) = (TILE_WORDS * tiles.len(), Vec::new());
         let mut words = Vec::new();
-        let (first, masks) = (3 * tiles.len(), 3 * tiles.len() + 2 * entries.len());
-        let mut at = first;
         for tile in &tiles {
-            words.extend([tile[0].tile, at as u32, (at + 2 * tile.len()) as u32]);
-            at += 2 * tile.len();
+            words.push(tile[0].tile);
+            for row in 0..TILE as usize {
+                words.push((first + rows.len()) as u32);
+                let pixels = |entry: &Entry| entry.mask[row / 2] >> (16 * (row % 2)) & 0xffff;
+                let covered = tile.iter().filter(|entry| pixels(entry) != 0);
+                rows.extend(covered.map(|entry| pixels(entry) << 16 | entry.triangle));
+            }
+            words.push((first + rows.len()) as u32);
         }
-        words.extend(entries.iter().flat_map(|entry| [entry.triangle, entry.covered.code(masks)]));
-        words.extend(self.masks.iter().flatten());
+        words.extend(rows);
         let list = List { first: 0, count: tiles.len() as u32, triangle: 0, is_full: false };
         Tiles { words, lists: vec![list] }
     }
 
-    /// Returns lists for each triangle, of the tiles that it covers and of the others: of each its number and its coverage. Masks stand at the end.
+    /// Returns lists for each triangle, of the tiles that it covers and of the others: of each its number, and where its mask stands, or 0. Masks stand at
+    /// the end.
     pub(crate) fn tiles_by_triangle(&self) -> Tiles {
-        let mut entries = self.entries.clone();
+        let mut entries: Vec<&Entry> = self.entries.iter().collect();
         let is_full = |entry: &Entry| entry.covered == Covered::All;
         entries.sort_by_key(|entry| (entry.triangle, is_full(entry)));
-        let masks = 2 * entries.len();
-        let mut words: Vec<u32> = entries.iter().flat_map(|entry| [entry.tile, entry.covered.code(masks)]).collect();
-        words.extend(self.masks.iter().flatten());
+        let (first, mut masks) = (2 * entries.len(), Vec::<u32>::new());
+        let mut words = Vec::new();
+        for entry in &entries {
+            let is_masked = entry.covered == Covered::ByMask;
+            words.extend([entry.tile, if is_masked { (first + masks.len()) as u32 } else { 0 }]);
+            masks.extend(entry.mask.iter().filter(|_| is_masked));
+        }
+        words.extend(masks);
         let mut first = 0;
         let lists = entries.chunk_by(|a, b| (a.triangle, is_full(a)) == (b.triangle, is_full(b))).map(|tiles| {
             let count = tiles.len() as u32;
             first += 2 * count;
-            List { first: first - 2 * count, count, triangle: tiles[0].triangle as usize, is_full: is_full(&tiles[0]) }
+            List { first: first - 2 * count, count, triangle: tiles[0].triangle as usize, is_full: is_full(tiles[0]) }
         });
         let lists = lists.collect();
         Tiles { words, lists }
-    }
-}
-
-impl Covered {
-    /// Returns the word of the shader: 0, 1, or where the mask stands, if the first one stands at `masks`. No mask stands at 0 or 1.
-    fn code(self, masks: usize) -> u32 {
-        match self {
-            Covered::ByRule => 0,
-            Covered::All => 1,
-            Covered::Mask(n) => (masks + 8 * n) as u32,
-        }
     }
 }
 

@@ -15,7 +15,7 @@ use crate::failure::Failure;
 use crate::text::{WORK, Way, fields, length, shader};
 
 /// Tiles of all triangles of a scene, each triangle's counted for itself.
-const TILES: usize = 1 << 26;
+const TILES: usize = 1 << 25;
 
 /// Up to so many triangles of a draw are dispatched one by one if they are large.
 const FEW: usize = 64;
@@ -237,21 +237,18 @@ impl Builder<'_> {
             bind_group_layouts: &[Some(&self.layout)],
             immediate_size: 0,
         });
-        let made = |is_full: f64| {
+        let made = |constants: &[(&str, f64)]| {
             device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some(&format!("draw {number}")),
                 layout: Some(&layout),
                 module: &module,
                 entry_point: Some("main"),
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: &[("is_full", is_full)],
-                    ..Default::default()
-                },
+                compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
                 cache: None,
             })
         };
-        let partial = made(0.0);
-        let full = if way == Way::ByTriangle { made(1.0) } else { partial.clone() };
+        let partial = made(&[]);
+        let full = if way == Way::ByTriangle { made(&[("is_full", 1.0)]) } else { partial.clone() };
         let pipelines = [partial, full];
         self.gpu.check()?;
         self.pipelines.insert(text, pipelines.clone());
@@ -326,9 +323,9 @@ impl Builder<'_> {
 }
 
 impl Shared<'_> {
-    /// Returns the uniform words of a dispatch: those of a triangle's constants are fours.
+    /// Returns the uniform words of a dispatch.
     fn window(&self) -> usize {
-        WORK + if self.way == Way::ByTriangle { self.length.next_multiple_of(4) } else { 0 }
+        WORK + if self.way == Way::ByTriangle { self.length } else { 0 }
     }
 }
 

@@ -7,6 +7,7 @@ use ninebit_lower::code::Kind;
 use ninebit_lower::{Draw, Field, Function, Input, Language, Result, Setup};
 
 use crate::adapter::{DISPATCH_ROW, TILE};
+use crate::bins::TILE_WORDS;
 
 /// How triangles are given to the shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,20 +31,25 @@ pub(crate) fn fields(function: &Function, setup: &Setup) -> Vec<Field> {
     all.into_iter().collect()
 }
 
-/// Returns the words of a triangle's constants.
+/// Returns the words of a triangle's constants, which are fours.
 pub(crate) fn length(fields: &[Field]) -> usize {
-    fields.iter().map(|field| field.words(0).len()).sum()
+    fields.iter().map(|field| field.words(0).len()).sum::<usize>().next_multiple_of(4)
 }
 
 /// Prints the shader of a draw. Draws that differ in constants of triangles and textures alone have the same text.
 pub(crate) fn shader(function: &Function, setup: &Setup, fields: &[Field], way: Way) -> String {
     let draw = Draw { name: "ninebit_draw".to_string(), about: "the draw".to_string(), function, setup };
     let mut text = Language::Wgsl.print_whole(&[draw]).unwrap_or_default();
-    let quads = length(fields).div_ceil(4);
-    let constants = match way {
-        Way::ByTile => String::new(),
-        Way::ByTriangle => format!("    constants: array<vec4<u32>, {quads}>,\n"),
+    let quads = length(fields) / 4;
+    let (constants, tile_words, triangle, functions, body) = match way {
+        Way::ByTile => (String::new(), TILE_WORDS, "", NEXT.to_string(), by_tile(function, quads)),
+        Way::ByTriangle => {
+            let constants = format!("    constants: array<vec4<u32>, {quads}>,\n");
+            let covers = COVERS.replace("TILE", &TILE.to_string());
+            (constants, 2, "    let triangle = triangle_at(0u);\n", covers, by_triangle(function))
+        }
     };
+    let constants_read = assignments(fields, way);
     let _ = write!(
         text,
         "
@@ -57,74 +63,87 @@ struct Work {{
 {constants}}}
 @group(0) @binding(0) var<uniform> work: Work;
 @group(0) @binding(1) var<storage, read> tiles: array<u32>;
-@group(0) @binding(2) var<storage, read> constants: array<u32>;
+@group(0) @binding(2) var<storage, read> constants: array<vec4<u32>>;
 @group(0) @binding(3) var<storage, read> memory: array<u32>;
 @group(0) @binding(4) var<storage, read_write> words: array<u32>;
 @group(0) @binding(5) var<storage, read_write> depths: array<u32>;
 
-fn ninebit_texel(unit: i32, at: i32) -> u32 {{ return memory[work.memory[unit] + u32(at)]; }}
+// Where the memory of each unit begins.
+var<private> bases: vec4<u32>;
 
-// The constants of a triangle, which begin at a word.
+fn ninebit_texel(unit: i32, at: i32) -> u32 {{ return memory[bases[unit] + u32(at)]; }}
+
+// The constants of a triangle, which begin at a four.
 fn triangle_at(first: u32) -> NinebitTriangle {{
     var triangle: NinebitTriangle;
-{}    return triangle;
+{constants_read}    return triangle;
 }}
-
-// Whether a triangle covers a pixel: by its edges (0), everywhere (1), or by a mask.
-fn covers(code: u32, triangle: NinebitTriangle, x: u32, y: u32) -> bool {{
-    if code == 0u {{ return ninebit_covers(triangle, i32(x), i32(y)); }}
-    if code == 1u {{ return true; }}
-    let bit = {TILE}u * (y % {TILE}u) + x % {TILE}u;
-    return ((tiles[code + bit / 32u] >> (bit % 32u)) & 1u) != 0u;
-}}
-
-// Whether triangles cover all pixels of the tiles.
-override is_full: bool = false;
-
+{functions}
 @compute @workgroup_size({TILE}, {TILE})
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {{
+    // What is the same in all invocations is read before any branch: there drivers that run on a CPU read it once.
+    bases = work.memory;
     let number = {DISPATCH_ROW}u * group.y + group.x;
-    if number >= work.tiles {{ return; }}
-    let entry = work.first + {}u * number;
+    let entry = work.first + {tile_words}u * number;
+    let tile = tiles[entry];
     let across = (work.width + {}u) / {TILE}u;
-    let x = {TILE}u * (tiles[entry] % across) + local.x;
-    let y = {TILE}u * (tiles[entry] / across) + local.y;
-    if x >= work.width || y >= work.height {{ return; }}
+    let x = {TILE}u * (tile % across) + local.x;
+    let y = {TILE}u * (tile / across) + local.y;
+{triangle}    if number >= work.tiles || x >= work.width || y >= work.height {{ return; }}
     let at = work.width * y + x;
-{}}}
+{body}}}
 ",
-        assignments(fields, way),
-        match way {
-            Way::ByTile => 3,
-            Way::ByTriangle => 2,
-        },
         TILE - 1,
-        match way {
-            Way::ByTile => by_tile(function, length(fields)),
-            Way::ByTriangle => by_triangle(function),
-        },
     );
     text
 }
+
+/// The function that finds triangles in the list of a tile's row.
+const NEXT: &str = "
+// The next triangle that covers a column, from number k of a list on.
+fn next(start: u32, end: u32, column: u32) -> u32 {
+    var k = start;
+    while k < end && ((tiles[k] >> (16u + column)) & 1u) == 0u { k++; }
+    return k;
+}
+";
+
+/// The function that tests coverage where tiles are those of one triangle.
+const COVERS: &str = "
+// Whether the triangle covers a pixel: by its edges (0), or by a mask.
+fn covers(code: u32, triangle: NinebitTriangle, x: u32, y: u32) -> bool {
+    if code == 0u { return ninebit_covers(triangle, i32(x), i32(y)); }
+    let bit = TILEu * (y % TILEu) + x % TILEu;
+    return ((tiles[code + bit / 32u] >> (bit % 32u)) & 1u) != 0u;
+}
+
+// Whether the triangle covers all pixels of the tiles.
+override is_full: bool = false;
+";
 
 /// Returns the text if the function writes depths, or stencils.
 fn where_depths_change<'t>(function: &Function, text: &'t str) -> &'t str {
     if matches!(function.result, Result::Pixel { depth: Some(_), .. }) { text } else { "" }
 }
 
-/// Prints the loop over the triangles of a tile. What the surface holds is read once and written once.
-fn by_tile(function: &Function, length: usize) -> String {
+/// Prints the loop over the triangles of a row of a tile. What the surface holds is read once and written once. Drivers that run neighbouring invocations
+/// in step run them once for each triangle of a pixel, not for each of the tile, and test the end last.
+fn by_tile(function: &Function, quads: usize) -> String {
     let kept = where_depths_change(function, "            depth = drawn.depth;\n");
     let stored = where_depths_change(function, "    depths[at] = depth;\n");
     format!(
         "    var word = words[at];
     var depth = depths[at];
-    for (var k = tiles[entry + 1u]; k < tiles[entry + 2u]; k += 2u) {{
-        let triangle = triangle_at({length}u * tiles[k]);
-        if covers(tiles[k + 1u], triangle, x, y) {{
+    let end = tiles[entry + local.y + 2u];
+    var k = next(tiles[entry + local.y + 1u], end, local.x);
+    loop {{
+        if k < end {{
+            let triangle = triangle_at({quads}u * (tiles[k] & 0xffffu));
             let drawn = ninebit_draw(triangle, i32(x), i32(y), word, depth);
             word = drawn.word;
 {kept}        }}
+        k = next(k + 1u, end, local.x);
+        continuing {{ break if k >= end; }}
     }}
     words[at] = word;
 {stored}"
@@ -135,8 +154,7 @@ fn by_tile(function: &Function, length: usize) -> String {
 fn by_triangle(function: &Function) -> String {
     let stored = where_depths_change(function, "        depths[at] = drawn.depth;\n");
     format!(
-        "    let triangle = triangle_at(0u);
-    if is_full || covers(tiles[entry + 1u], triangle, x, y) {{
+        "    if is_full || covers(tiles[entry + 1u], triangle, x, y) {{
         let drawn = ninebit_draw(triangle, i32(x), i32(y), words[at], depths[at]);
         words[at] = drawn.word;
 {stored}    }}
@@ -147,12 +165,16 @@ fn by_triangle(function: &Function) -> String {
 /// Prints how a triangle's constants are read.
 fn assignments(fields: &[Field], way: Way) -> String {
     let (mut text, mut at) = (String::new(), 0);
+    let fours = match way {
+        Way::ByTile => "constants[first + ",
+        Way::ByTriangle => "work.constants[",
+    };
+    for n in 0..length(fields) / 4 {
+        let _ = writeln!(text, "    let four{n} = {fours}{n}u];");
+    }
     for field in fields {
         let words: Vec<String> = (at..at + field.words(0).len())
-            .map(|at| match way {
-                Way::ByTile => format!("constants[first + {at}u]"),
-                Way::ByTriangle => format!("work.constants[{}].{}", at / 4, ["x", "y", "z", "w"][at % 4]),
-            })
+            .map(|at| format!("four{}.{}", at / 4, ["x", "y", "z", "w"][at % 4]))
             .collect();
         at += words.len();
         let value = match (field.kind(), &words[..]) {

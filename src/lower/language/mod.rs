@@ -360,6 +360,7 @@ impl<'f> Body<'f> {
             Operation::Add(a, b) => infix(self.summand(a, true), "+", self.summand(b, false)),
             Operation::Subtract(a, b) => infix(self.summand(a, true), "-", self.summand(b, false)),
             Operation::Multiply(a, b) | Operation::Times(a, b) => infix(term(a), "*", term(b)),
+            Operation::Quotient(a, by) if self.is_shift(by) => infix(term(a), ">>", shift(by.trailing_zeros())),
             Operation::Quotient(a, by) => infix(term(a), "/", number(by)),
             Operation::Bits(a, mask) => infix(term(a), "&", number(mask)),
             Operation::Flip(a, bit) => infix(term(a), "^", number(bit)),
@@ -419,12 +420,19 @@ impl<'f> Body<'f> {
         operands.map(|operand| self.operand(operand, kind).open())
     }
 
+    /// Returns whether a quotient is printed as a shift: what is divided is not negative, but compilers do not know that. Verilog has wires as wide as
+    /// ranges, so its tools do.
+    fn is_shift(&self, by: i64) -> bool {
+        by & (by - 1) == 0 && !self.syntax.compares_names()
+    }
+
     /// Prints an operand of a sum. Products need no parentheses there, nor do sums if they come first.
     fn summand(&self, operand: Operand, first: bool) -> String {
         let text = self.operand(operand, Kind::Number);
         let binds = operand.line().is_some_and(|line| match self.lines[line].operation {
             Operation::Add(..) | Operation::Subtract(..) => first,
-            Operation::Multiply(..) | Operation::Quotient(..) => true,
+            Operation::Quotient(_, by) => !self.is_shift(by),
+            Operation::Multiply(..) => true,
             _ => false,
         });
         if binds { text.open() } else { text.term() }
