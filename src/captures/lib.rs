@@ -26,6 +26,7 @@ mod lighting;
 mod lights;
 mod lines;
 mod materials;
+mod memory;
 mod meshes;
 mod points;
 mod polygon_offset;
@@ -41,13 +42,15 @@ mod table;
 mod texel_formats;
 mod texgen;
 mod transfers;
+pub mod verdict;
 
 pub use table::Open;
 
 use draws::*;
 use images::checker;
+use memory::{put_back, put_memory, seen_as, shown_as_565};
 use ninebit::engine::{RenderOptions, cleared, render};
-use ninebit::frame::{Frames as Rendered, Surface};
+use ninebit::frame::Frames as Rendered;
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanError, PlanOptions};
 use ninebit::rop::surface;
@@ -394,32 +397,53 @@ impl PreparedFrame {
         shortcuts: Shortcuts,
         mask: Mask<'_>,
     ) -> Result<Vec<[u8; 4]>, Vec<PlanError>> {
-        let draw = |plan: &Plan, mask: Mask<'_>, memory: Option<&[u32]>| -> Rendered {
+        self.drawn(shortcuts, mask, |_, plan, mask| {
             let plan = match shortcuts.is_empty() {
                 true => Cow::Borrowed(plan),
                 false => Cow::Owned(plan.clone().with_shortcuts(shortcuts)),
             };
             let mut frames = cleared(&plan);
-            if let Some(words) = memory {
-                frames.surfaces[0].words = seen_as(words, plan.targets()[0].format);
-            }
             shortcut::render(&plan, shortcuts, options, &mut frames, mask);
-            frames
-        };
-        let FrameDrawing { scene, view, shown, .. } = &self.drawn;
-        let main = if self.before.is_empty() {
-            Cow::Borrowed(&self.main)
-        } else {
-            let mut scene = scene.clone();
-            for (before, texture) in self.before.iter().zip(&mut scene.textures) {
-                put_memory(&draw(before, None, None).surfaces[0], texture);
+            Ok(frames)
+        })
+    }
+
+    /// Draws the frame by whatever draws scenes with their plans. Returns R, G, B, A of every pixel, row by row from the top.
+    ///
+    /// # Errors
+    /// Returns those of `draw`, and the plan's errors if a scene that reads what was drawn before it cannot be planned.
+    pub fn render_by<E: From<Vec<PlanError>>>(
+        &self,
+        mut draw: impl FnMut(&Scene, &Plan) -> Result<Rendered, E>,
+    ) -> Result<Vec<[u8; 4]>, E> {
+        self.drawn(Shortcuts::NONE, None, |scene, plan, _| draw(scene, plan))
+    }
+
+    /// Draws the frame by `draw`, which gets a scene, its plan and what is wanted of it.
+    fn drawn<E: From<Vec<PlanError>>>(
+        &self,
+        shortcuts: Shortcuts,
+        mask: Mask<'_>,
+        mut draw: impl FnMut(&Scene, &Plan, Mask<'_>) -> Result<Rendered, E>,
+    ) -> Result<Vec<[u8; 4]>, E> {
+        let FrameDrawing { scene, before, view, shown } = &self.drawn;
+        let (mut scene, mut main) = (Cow::Borrowed(scene), Cow::Borrowed(&self.main));
+        if !before.is_empty() {
+            for (n, (before, plan)) in before.iter().zip(&self.before).enumerate() {
+                let frames = draw(before, plan, None)?;
+                if let Some(texture) = scene.to_mut().textures.get_mut(n) {
+                    put_memory(&frames.surfaces[0], texture);
+                }
             }
-            Cow::Owned(planned(&scene, self.policies)?)
-        };
-        let mut frames = draw(&main, mask.filter(|_| view.is_none()), None);
+            main = Cow::Owned(planned(&scene, self.policies)?);
+        }
+        let mut frames = draw(&scene, &main, mask.filter(|_| view.is_none()))?;
         let mut words = std::mem::take(&mut frames.surfaces[0].words);
-        if let Some(view) = &self.view {
-            put_back(&draw(view, None, Some(&words)).surfaces[0], &mut words);
+        if let Some(view) = view {
+            let mut view = view.clone();
+            view.targets[0].contents = Some(seen_as(&words, SIZE.0 as usize, view.targets[0].format).into());
+            let frames = draw(&view, &planned(&view, self.policies)?, None)?;
+            put_back(&frames.surfaces[0], &mut words);
         }
         if *shown == Buffer::Depth
             && let Some(depth) = scene.targets[0].depth
@@ -446,12 +470,6 @@ fn planned(scene: &Scene, policies: Policies) -> Result<Plan, Vec<PlanError>> {
     Plan::compile_within(scene, &PlanOptions { policies, ..PlanOptions::default() }, &Limits::default())
 }
 
-/// Converts an R5G6B5 word as the captured pictures do, by their own factors: 255/31, and 97/24 for G.
-fn shown_as_565(word: u32) -> [u8; 4] {
-    let channel = |n: u32, factor: [u32; 2]| (n * factor[0] / factor[1]) as u8;
-    [channel(word >> 11, [255, 31]), channel(word >> 5 & 63, [97, 24]), channel(word & 31, [255, 31]), 255]
-}
-
 /// Returns the indices of a rectangle's pixels in a frame.
 pub fn pixels(of: &Rectangle) -> impl Iterator<Item = usize> + use<> {
     let Rectangle { x, y, width, height } = *of;
@@ -470,35 +488,4 @@ fn digest(pixels: &[[u8; 4]], text: &[Rectangle]) -> String {
     let bytes = pixels.iter().zip(outside).filter_map(|(pixel, outside)| outside.then_some(*pixel));
     let bytes: Vec<[u8; 4]> = bytes.collect();
     hexadecimal(&Sha256::digest(bytes.as_flattened())[..8])
-}
-
-/// Puts the beginning of a surface's memory into a texture of 32-bit texels.
-fn put_memory(surface: &Surface, texture: &mut Texture) {
-    let TextureImage::Texels(texels) = &mut texture.image else { return };
-    let bytes = surface.format.bytes() as usize;
-    let memory: Vec<u8> = surface.words.iter().flat_map(|word| word.to_le_bytes().into_iter().take(bytes)).collect();
-    let words = memory.as_chunks().0.iter().map(|four| u32::from_le_bytes(*four));
-    texels.words = words.take(texels.words.len()).collect();
-}
-
-/// Reads the beginning of each row of 32-bit words as words of a narrower format.
-fn seen_as(words: &[u32], format: SurfaceFormat) -> Vec<u32> {
-    let bytes = format.bytes() as usize;
-    let row = |row: &[u32]| {
-        let memory: Vec<u8> = row.iter().flat_map(|word| word.to_le_bytes()).collect();
-        let word = |bytes: &[u8]| bytes.iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte));
-        memory.chunks(bytes).take(row.len()).map(word).collect::<Vec<_>>()
-    };
-    words.chunks(SIZE.0 as usize).flat_map(row).collect()
-}
-
-/// Writes a narrower surface back into the beginning of each row of 32-bit words.
-fn put_back(surface: &Surface, words: &mut [u32]) {
-    let (bytes, width) = (surface.format.bytes() as usize, SIZE.0 as usize);
-    for (narrow, row) in surface.words.chunks(width).zip(words.chunks_mut(width)) {
-        let memory: Vec<u8> = narrow.iter().flat_map(|word| word.to_le_bytes().into_iter().take(bytes)).collect();
-        for (word, four) in row.iter_mut().zip(memory.as_chunks::<4>().0) {
-            *word = u32::from_le_bytes(*four);
-        }
-    }
 }

@@ -3,15 +3,13 @@
 mod export;
 
 use super::*;
-use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use ninebit::plan::PlanError;
 use ninebit::threads::on_threads;
-use ninebit_captures::{Frame, SIZE, SOURCE};
+use ninebit_captures::verdict::{self, Verdict, WrongPicture};
+use ninebit_captures::{Frame, SOURCE};
 use rayon::prelude::*;
-
-use ninebit_scene::diff::{self, Difference, Options};
 
 /// Frames of a real NV2A, drawn again.
 #[derive(Debug, Subcommand)]
@@ -52,9 +50,6 @@ pub(crate) struct CheckArguments {
     format: Format,
 }
 
-/// Maximum number of differing frames that are listed.
-const SHOWN: usize = 20;
-
 /// Runs a subcommand.
 pub(crate) fn run(command: &Command) -> Result<(), Failure> {
     match command {
@@ -82,14 +77,6 @@ fn list() -> Result<(), Failure> {
     Ok(write_text(&text)?)
 }
 
-/// Result of a frame.
-struct Outcome {
-    frame: Frame,
-    exact: bool,
-    /// If the captured picture is available: the difference, and the first differing pixel as drawn and as captured.
-    difference: Option<(Difference, [[u8; 4]; 2])>,
-}
-
 fn check(arguments: &CheckArguments) -> Result<(), Failure> {
     let known: Vec<&str> = ninebit_captures::suites().collect();
     if let Some(unknown) = arguments.suites.iter().find(|suite| !known.contains(&suite.as_str())) {
@@ -99,7 +86,7 @@ fn check(arguments: &CheckArguments) -> Result<(), Failure> {
     let suites: Vec<&str> = arguments.suites.iter().map(String::as_str).collect();
     let options = RenderOptions { threads: 1, ..arguments.engine.options()? };
     let policies = arguments.policies.policies()?;
-    let outcomes: Vec<Outcome> = on_threads(arguments.engine.threads, || {
+    let verdicts: Vec<Verdict> = on_threads(arguments.engine.threads, || {
         let mut frames = frames(&suites)?;
         if let Some(count) = arguments.sample {
             frames = ninebit_captures::sample(frames, count);
@@ -109,19 +96,8 @@ fn check(arguments: &CheckArguments) -> Result<(), Failure> {
         drawn.collect::<Result<_, Failure>>()
     })?;
     let has_captures = arguments.captures.is_some();
-    arguments.format.print(|| text(&outcomes, has_captures), || format!("{:#}", report(&outcomes)))?;
-    if outcomes.iter().all(Outcome::is_as_known) { Ok(()) } else { Err(Failure::difference()) }
-}
-
-impl Outcome {
-    /// Returns whether the frame is exact, or differs as the table says. Without the captured picture the number of differing pixels is unknown.
-    fn is_as_known(&self) -> bool {
-        match (self.frame.open, &self.difference) {
-            (None, _) => self.exact,
-            (Some(open), Some((difference, _))) => difference.different == open.pixels,
-            (Some(_), None) => !self.exact,
-        }
-    }
+    arguments.format.print(|| verdict::text(&verdicts, has_captures), || format!("{:#}", report(&verdicts)))?;
+    if verdicts.iter().all(Verdict::is_as_known) { Ok(()) } else { Err(Failure::difference()) }
 }
 
 /// Returns the failure of a frame that cannot be planned.
@@ -130,102 +106,30 @@ fn planned(frame: &Frame, errors: &[PlanError]) -> Failure {
     Failure::fault(&format!("{}/{}: {}", frame.suite, frame.name, errors.join("; ")))
 }
 
-fn draw(frame: Frame, options: &RenderOptions, policies: Policies, folder: Option<&Path>) -> Result<Outcome, Failure> {
+fn draw(frame: Frame, options: &RenderOptions, policies: Policies, folder: Option<&Path>) -> Result<Verdict, Failure> {
     let pixels = frame.render(options, policies).map_err(|errors| planned(&frame, &errors))?;
-    let mut outcome = Outcome { exact: frame.is(&pixels), difference: None, frame };
-    let Some(folder) = folder else { return Ok(outcome) };
-    let path = folder.join(outcome.frame.suite).join(format!("{}.png", outcome.frame.name));
-    let capture = image::load(&path, &ImageLimits::default())?;
-    let invalid = |message: String| {
-        Failure::invalid("NB0524", message, "take the pictures of the source that `ninebit captures list` names")
-    };
-    if (capture.width(), capture.height()) != SIZE {
-        return Err(invalid(format!("`{}` is {} x {}", shown::path(&path), capture.width(), capture.height())));
-    }
-    if !outcome.frame.is(capture.pixels()) {
-        return Err(invalid(format!("`{}` is not the picture that was measured", shown::path(&path))));
-    }
-    // Printed letters are copied, so that they are equal.
-    let mut masked = Rgba::new(SIZE.0, pixels);
-    for at in outcome.frame.text.iter().flat_map(ninebit_captures::pixels) {
-        let captured = capture.pixels()[at];
-        if captured == ninebit_captures::LETTERS {
-            masked.pixels_mut()[at] = captured;
-        }
-    }
-    let difference = diff::compare(&masked, &capture, &Options { regions: 1, ..Options::default() });
-    let difference = difference.map_err(|error| invalid(error.to_string()))?;
-    outcome.exact = difference.different == 0;
-    if let Some(region) = difference.regions.first() {
-        let at = region.first.1 as usize * SIZE.0 as usize + region.first.0 as usize;
-        outcome.difference = Some((difference, [masked.pixels()[at], capture.pixels()[at]]));
-    }
-    Ok(outcome)
+    let path = folder.map(|folder| verdict::path(folder, &frame));
+    let capture = path.as_ref().map(|path| image::load(path, &ImageLimits::default())).transpose()?;
+    let wrong = |WrongPicture(message)| Failure::invalid(WrongPicture::CODE, message, WrongPicture::HELP);
+    Verdict::new(frame, pixels, path.as_deref().zip(capture.as_ref())).map_err(wrong)
 }
 
-fn text(outcomes: &[Outcome], has_captures: bool) -> String {
-    let mut text = format!("{:<32}frames   exact         pixels\n", "suite");
-    for suite in ninebit_captures::suites() {
-        let of: Vec<&Outcome> = outcomes.iter().filter(|outcome| outcome.frame.suite == suite).collect();
-        if of.is_empty() {
-            continue;
-        }
-        let exact = of.iter().filter(|outcome| outcome.exact).count();
-        let pixels: u64 = of.iter().map(|outcome| outcome.frame.compared()).sum();
-        let _ = writeln!(text, "{suite:<32}{:>6}{exact:>8}{pixels:>15}", of.len());
-    }
-    let mut open = BTreeMap::<&str, (usize, u64)>::new();
-    for known in outcomes.iter().filter(|outcome| outcome.is_as_known()).filter_map(|outcome| outcome.frame.open) {
-        let of = open.entry(known.rule).or_default();
-        *of = (of.0 + 1, of.1 + known.pixels);
-    }
-    for (rule, (frames, pixels)) in &open {
-        let _ = writeln!(text, "open, {rule}: {}, {}", shown::count(*frames as u64, "frame"), diff::pixels(*pixels));
-    }
-    let differing: Vec<&Outcome> = outcomes.iter().filter(|outcome| !outcome.is_as_known()).collect();
-    for Outcome { frame, difference, exact } in differing.iter().take(SHOWN) {
-        let name = format!("{}/{}", frame.suite, frame.name);
-        let _ = match difference {
-            None if *exact => writeln!(text, "{name}: exact, and the table says that it is not"),
-            None => writeln!(text, "{name}: another picture than the captured one"),
-            Some((difference, [here, captured])) => {
-                let (x, y) = difference.regions[0].first;
-                let pixels = diff::pixels(difference.different);
-                writeln!(text, "{name}: {pixels} differ; {x},{y} is {here:?}, captured {captured:?}")
-            }
-        };
-    }
-    if differing.len() > SHOWN {
-        let _ = writeln!(text, "and {} more", differing.len() - SHOWN);
-    }
-    if !differing.is_empty() && !has_captures {
-        text.push_str("with the captured pictures (`--captures DIR`) it is said which pixels\n");
-    }
-    let exact = outcomes.iter().filter(|outcome| outcome.exact).count();
-    let _ = match differing.len() {
-        0 if exact == outcomes.len() => writeln!(text, "{exact} frames: all exact"),
-        0 => writeln!(text, "{} frames: {exact} exact, the others as known", outcomes.len()),
-        count => writeln!(text, "{} frames: {count} differ", outcomes.len()),
-    };
-    text
-}
-
-fn report(outcomes: &[Outcome]) -> serde_json::Value {
-    let frame = |outcome: &Outcome| {
-        let frame = &outcome.frame;
+fn report(verdicts: &[Verdict]) -> serde_json::Value {
+    let frame = |verdict: &Verdict| {
+        let frame = &verdict.frame;
         json!({
             "suite": frame.suite,
             "frame": frame.name,
             "compared_pixels": frame.compared(),
-            "exact": outcome.exact,
+            "exact": verdict.exact,
             "open": frame.open.map(|open| json!({ "rule": open.rule, "pixels": open.pixels })),
-            "differing_pixels": outcome.difference.as_ref().map(|(difference, _)| difference.different),
+            "differing_pixels": verdict.difference.as_ref().map(|(difference, _)| difference.different),
         })
     };
     json!({
         "format": "ninebit-captures-1",
         "version": env!("CARGO_PKG_VERSION"),
         "source": SOURCE,
-        "frames": outcomes.iter().map(frame).collect::<Vec<_>>(),
+        "frames": verdicts.iter().map(frame).collect::<Vec<_>>(),
     })
 }
