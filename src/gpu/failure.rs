@@ -1,9 +1,12 @@
 //! Reasons why a command stops, as the program `ninebit` reports them.
 
+use ninebit::plan::PlanError;
 use ninebit::shown;
+use ninebit_captures::verdict::WrongPicture;
 use ninebit_files::catch_panic::Panic;
 use ninebit_files::output::OutputError;
 use ninebit_scene::SceneError;
+use ninebit_scene::image::ImageError;
 
 /// Reason why a command stops.
 #[derive(Debug)]
@@ -51,6 +54,12 @@ impl Failure {
         Failure::Message { code: Some("NB1703"), exit: 6, message, help }
     }
 
+    /// Returns the failure for a fault of this program.
+    pub fn fault(message: impl Into<String>) -> Failure {
+        let help = "please report it, with the command line".to_string();
+        Failure::Message { code: Some("NB0801"), exit: 6, message: message.into(), help }
+    }
+
     /// Returns the exit status.
     pub fn exit(&self) -> u8 {
         match self {
@@ -88,6 +97,31 @@ impl From<SceneError> for Failure {
 impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Failure {
         Failure::Output(error)
+    }
+}
+
+/// Captured frames are planned without an error.
+impl From<Vec<PlanError>> for Failure {
+    fn from(errors: Vec<PlanError>) -> Failure {
+        Failure::fault(errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
+    }
+}
+
+impl From<WrongPicture> for Failure {
+    fn from(WrongPicture(message): WrongPicture) -> Failure {
+        Failure::Message { code: Some(WrongPicture::CODE), exit: 3, message, help: WrongPicture::HELP.to_string() }
+    }
+}
+
+impl From<ImageError> for Failure {
+    fn from(error: ImageError) -> Failure {
+        let exit = match () {
+            () if error.is_limit() => 5,
+            () if error.is_missing() => 4,
+            () => 3,
+        };
+        let (message, help) = (error.to_string(), error.help().to_string());
+        Failure::Message { code: Some(error.code()), exit, message, help }
     }
 }
 

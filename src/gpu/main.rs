@@ -1,14 +1,17 @@
 //! The program `ninebit-gpu`: draws scenes on a GPU. Data goes to stdout, messages to stderr.
 
+mod captures;
+
 use std::ffi::OsStr;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use cpu_time::ProcessTime;
-use ninebit::engine::{RenderOptions, Renderer as Engine, render};
+use ninebit::engine::{self, RenderOptions, render};
+use ninebit::frame::Frames;
 use ninebit::limits::Limits;
 use ninebit::plan::Plan;
 use ninebit::shown;
@@ -41,6 +44,8 @@ enum Command {
         target: Option<String>,
         #[command(flatten)]
         drawing: Drawing,
+        #[command(flatten)]
+        chosen: Chosen,
     },
     /// Time how long scenes take to draw, by the GPU and by our engine
     ///
@@ -58,6 +63,8 @@ enum Command {
         threads: u16,
         #[command(flatten)]
         drawing: Drawing,
+        #[command(flatten)]
+        chosen: Chosen,
     },
     /// Draw scenes by the GPU and by our engine, and compare every stored word
     ///
@@ -69,8 +76,36 @@ enum Command {
         #[command(flatten)]
         drawing: Drawing,
     },
+    /// Draw captured frames of a real NV2A by the GPU, and compare every stored word with our engine's and the frames with the captures
+    ///
+    /// Exit status 0: all words are equal, and all frames exact, but for those of which the table says that a rule is open; 1: others differ.
+    Captures(captures::Arguments),
     /// List the adapters of this machine
     Adapters,
+}
+
+/// What draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Engine {
+    /// A GPU, by printed shaders
+    Gpu,
+    /// Our engine on the CPU
+    Cpu,
+}
+
+/// The choice of what draws.
+#[derive(Debug, Args)]
+struct Chosen {
+    /// What draws
+    #[arg(long, value_enum, value_name = "ENGINE", default_value_t = Engine::Gpu)]
+    engine: Engine,
+}
+
+impl Chosen {
+    /// Opens the adapter, unless our engine draws.
+    fn open(&self, drawing: &Drawing) -> Result<Option<Gpu>, Failure> {
+        (self.engine == Engine::Gpu).then(|| drawing.open()).transpose()
+    }
 }
 
 /// Options for drawing.
@@ -92,13 +127,19 @@ impl Drawing {
         Ok(gpu)
     }
 
-    /// Reads and plans a scene.
-    fn load(&self, path: &Path) -> Result<(Scene, Plan), Failure> {
+    /// Returns the chosen alternatives.
+    fn policies(&self) -> Result<Policies, Failure> {
         let mut policies = Policies::DEFAULT;
         for policy in &self.policies {
             let help = "`ninebit policies` lists the rules and their values";
             policies.set(policy).map_err(|error| Failure::usage(error.to_string(), help))?;
         }
+        Ok(policies)
+    }
+
+    /// Reads and plans a scene.
+    fn load(&self, path: &Path) -> Result<(Scene, Plan), Failure> {
+        let policies = self.policies()?;
         let loaded = ninebit_scene::load(path, &Limits::default())?;
         say(&loaded.render_warnings(false));
         loaded.affordable(Limits::default().shaded_pixels)?;
@@ -126,11 +167,14 @@ fn main() -> ExitCode {
 
 fn run(command: &Command) -> Result<(), Failure> {
     match command {
-        Command::Render { scene, output, target, drawing } => {
-            picture(scene, output.as_os_str(), target.as_deref(), drawing)
+        Command::Render { scene, output, target, drawing, chosen } => {
+            picture(scene, output.as_os_str(), target.as_deref(), (drawing, chosen))
         }
-        Command::Bench { scenes, frames, threads, drawing } => bench(scenes, *frames, *threads, drawing),
+        Command::Bench { scenes, frames, threads, drawing, chosen } => {
+            bench(scenes, *frames, *threads, (drawing, chosen))
+        }
         Command::Replay { places, drawing } => replay(places, drawing),
+        Command::Captures(arguments) => captures::run(arguments),
         Command::Adapters => list(),
     }
 }
@@ -147,7 +191,12 @@ fn list() -> Result<(), Failure> {
 }
 
 /// Renders a scene.
-fn picture(path: &Path, output: &OsStr, target: Option<&str>, drawing: &Drawing) -> Result<(), Failure> {
+fn picture(
+    path: &Path,
+    output: &OsStr,
+    target: Option<&str>,
+    (drawing, chosen): (&Drawing, &Chosen),
+) -> Result<(), Failure> {
     let (scene, plan) = drawing.load(path)?;
     let destination = Destination::from(output);
     destination.check()?;
@@ -156,33 +205,58 @@ fn picture(path: &Path, output: &OsStr, target: Option<&str>, drawing: &Drawing)
         let message = format!("there is no target `{}`", shown::name(target.unwrap_or_default()));
         Failure::usage(message, format!("the scene has {}", names.join(", ")))
     })?;
-    let gpu = drawing.open()?;
-    let renderer = Renderer::new(&gpu, &scene, &plan)?;
-    renderer.draw()?;
-    let surface = &renderer.frames()?.surfaces[index];
+    let frames = match chosen.open(drawing)? {
+        Some(gpu) => drawn(&gpu, &scene, &plan)?,
+        None => by_engine(&plan),
+    };
+    let surface = &frames.surfaces[index];
     let png = encode_png(surface.width, surface.height, &surface.rgba8(), Compression::Fast)?;
     Ok(destination.write(&png)?)
 }
 
+/// Draws a scene by the GPU.
+fn drawn(gpu: &Gpu, scene: &Scene, plan: &Plan) -> Result<Frames, Failure> {
+    let renderer = Renderer::new(gpu, scene, plan)?;
+    renderer.draw()?;
+    renderer.frames()
+}
+
+/// Draws a scene by our engine.
+fn by_engine(plan: &Plan) -> Frames {
+    render(plan, &RenderOptions { threads: 0, ..RenderOptions::default() })
+}
+
+/// Times frames of the GPU. Returns set-up, and of a frame the time and that of the CPU, in milliseconds.
+fn time_of_gpu(gpu: &Gpu, scene: &Scene, plan: &Plan, frames: u32) -> Result<[f64; 3], Failure> {
+    let started = Instant::now();
+    let renderer = Renderer::new(gpu, scene, plan)?;
+    // The driver compiles at the first frame.
+    renderer.draw()?;
+    let set_up = milliseconds(started.elapsed());
+    let times = (0..frames).map(|_| timed(|| renderer.draw())).collect::<Result<_, _>>()?;
+    let [frame, cpu] = least(times);
+    Ok([set_up, frame, cpu])
+}
+
 /// Times scenes.
-fn bench(scenes: &[PathBuf], frames: u32, threads: u16, drawing: &Drawing) -> Result<(), Failure> {
-    let gpu = drawing.open()?;
+fn bench(scenes: &[PathBuf], frames: u32, threads: u16, (drawing, chosen): (&Drawing, &Chosen)) -> Result<(), Failure> {
+    let gpu = chosen.open(drawing)?;
     let mut text = format!(
         "the least of {frames} frames, {}\n{:>10} {:>10} {:>10} {:>10} {:>10} {:>10} {:>8}  scene\n",
-        gpu.name, "pixels", "ms set-up", "ms a frame", "cpu ms", "engine ms", "cpu ms", "times"
+        gpu.as_ref().map_or("our engine alone", |gpu| &gpu.name),
+        "pixels",
+        "ms set-up",
+        "ms a frame",
+        "cpu ms",
+        "engine ms",
+        "cpu ms",
+        "times"
     );
     for path in &self::scenes(scenes) {
         let (scene, plan) = drawing.load(path)?;
-        let started = Instant::now();
-        let renderer = Renderer::new(&gpu, &scene, &plan)?;
-        // The driver compiles at the first frame.
-        renderer.draw()?;
-        let set_up = started.elapsed();
-        let mut times = Vec::new();
-        for _ in 0..frames {
-            times.push(timed(|| renderer.draw())?);
-        }
-        let engine = Engine::new(&plan, &RenderOptions { threads: threads.into(), ..RenderOptions::default() });
+        let of_gpu = gpu.as_ref().map(|gpu| time_of_gpu(gpu, &scene, &plan, frames)).transpose()?;
+        let engine =
+            engine::Renderer::new(&plan, &RenderOptions { threads: threads.into(), ..RenderOptions::default() });
         let (mut surfaces, statistics) = engine.render();
         let mut engine_times = Vec::new();
         for _ in 0..frames {
@@ -192,14 +266,15 @@ fn bench(scenes: &[PathBuf], frames: u32, threads: u16, drawing: &Drawing) -> Re
                 Ok(())
             })?);
         }
-        let [[frame, cpu], [engine_frame, engine_cpu]] = [times, engine_times].map(least);
+        let [engine_frame, engine_cpu] = least(engine_times);
         let pixels: u64 = statistics.shaded_pixels.iter().sum();
-        let times = frame / engine_frame;
-        text += &format!(
-            "{pixels:>10} {:>10.1} {frame:>10.3} {cpu:>10.3} {engine_frame:>10.3} {engine_cpu:>10.3} {times:>8.2}  {}\n",
-            milliseconds(set_up),
-            shown::path(path)
-        );
+        text += &format!("{pixels:>10} ");
+        text += &match of_gpu {
+            Some([set_up, frame, cpu]) => format!("{set_up:>10.1} {frame:>10.3} {cpu:>10.3}"),
+            None => format!("{:>10} {:>10} {:>10}", "-", "-", "-"),
+        };
+        let times = of_gpu.map_or("-".to_string(), |[_, frame, _]| format!("{:.2}", frame / engine_frame));
+        text += &format!(" {engine_frame:>10.3} {engine_cpu:>10.3} {times:>8}  {}\n", shown::path(path));
     }
     Ok(write_text(&text)?)
 }
@@ -251,13 +326,7 @@ fn replay(places: &[PathBuf], drawing: &Drawing) -> Result<(), Failure> {
 /// Draws a scene twice. Returns what differs.
 fn compared(path: &Path, gpu: &Gpu, drawing: &Drawing) -> Result<Option<String>, Failure> {
     let (scene, plan) = drawing.load(path)?;
-    let renderer = Renderer::new(gpu, &scene, &plan)?;
-    renderer.draw()?;
-    Ok(difference(
-        &plan,
-        &render(&plan, &RenderOptions { threads: 0, ..RenderOptions::default() }),
-        &renderer.frames()?,
-    ))
+    Ok(difference(&plan, &by_engine(&plan), &drawn(gpu, &scene, &plan)?))
 }
 
 /// Returns the scenes of places: files, and those below folders. Expectations and families are none.

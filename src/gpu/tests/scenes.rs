@@ -9,6 +9,7 @@
 mod setting;
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use ninebit::engine::{RenderOptions, render};
@@ -35,6 +36,8 @@ fn main() {
         trial("a_difference_is_found", found),
         trial("adapters_are_chosen_by_number_and_name", chosen),
         trial("limits_refuse_by_name", limits),
+        trial("captured_frames_have_the_words_of_the_engine", captured),
+        trial("both_engines_write_one_picture", pictures),
     ];
     libtest_mimic::run(&arguments, trials).exit();
 }
@@ -116,6 +119,38 @@ fn converted() -> Result<(), Failed> {
     let scene = scene("buffers/bytes.ron");
     assert!(converts(&scene));
     hold(&open(), &scene, Policies::DEFAULT, "bytes")
+}
+
+/// Runs the program by the chosen adapter. Returns what it prints.
+fn run(arguments: &[&str]) -> Result<Vec<u8>, Failed> {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_ninebit-gpu"));
+    if let Ok(wanted) = std::env::var("NINEBIT_GPU_ADAPTER") {
+        command.args([arguments[0], "--adapter", &wanted]).args(&arguments[1..]);
+    } else {
+        command.args(arguments);
+    }
+    let output = command.output()?;
+    if output.status.success() { Ok(output.stdout) } else { Err(format!("{output:?}").into()) }
+}
+
+fn captured() -> Result<(), Failed> {
+    // Frames of one scene, of a scene that reads another, and of two views of a memory.
+    let suites = ["Stencil_func", "Surface_clip", "Blend_surface"].map(|suite| ["--suite", suite]);
+    let frames = [&["captures", "--step", "11"], suites.as_flattened()].concat();
+    let by_gpu = String::from_utf8(run(&frames)?)?;
+    let by_cpu = String::from_utf8(run(&[&frames[..], &["--engine", "cpu"]].concat())?)?;
+    let words = by_gpu.strip_prefix(&by_cpu).ok_or_else(|| format!("{by_gpu}\n{by_cpu}"))?;
+    assert!(by_cpu.contains("Stencil_func") && words.ends_with("have our engine's words\n"), "{by_gpu}");
+    Ok(())
+}
+
+fn pictures() -> Result<(), Failed> {
+    let path = format!("{SCENES}/bench/w1.ron");
+    let render = ["render", &path, "-o", "-"];
+    let by_gpu = run(&render)?;
+    assert!(by_gpu.starts_with(b"\x89PNG"));
+    assert_eq!(by_gpu, run(&[&render[..], &["--engine", "cpu"]].concat())?);
+    Ok(())
 }
 
 fn limits() -> Result<(), Failed> {
