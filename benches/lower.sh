@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Times printed C on the first draw of scenes: nanoseconds a pixel on one core, gcc -O2, over 4,096 pixels that are given at random, the median of nine runs. Once the
-# function of the draw, once the generic text, which reads the draw's register words while it runs.
+# function of the draw, once the generic text, which reads the draw's register words while it runs, and once the whole pixel, in a triangle in perspective.
 #
 #     benches/lower.sh SCENE...
 #
@@ -91,6 +91,40 @@ END
     } > "$work/given.h"
     cc -std=c99 -O2 -o "$work/bench" "$work/bench.c" "$work/ninebit_combiners.c"
     printf '; generic: '
+    "$work/bench"
+    "$NINEBIT" lower "$scene" --whole --to c99 --draw 0 > "$work/whole.h"
+    cat > "$work/given.h" << 'END'
+#include "whole.h"
+enum { TEXELS = 1 << 22 };
+static struct ninebit_triangle triangle;
+static uint32_t memory[TEXELS];
+static int32_t places[PIXELS][2];
+static void fill(int n)
+{
+    static const int32_t position[3][2] = {{0, 0}, {640 * 16, 0}, {0, 480 * 16}};
+    static const uint32_t w[3] = {0x40000000, 0x40000000, 0x3f800000}; /* 2, 2, 1 */
+    places[n][0] = rand() % 640;
+    places[n][1] = rand() % (480 - places[n][0] * 3 / 4);
+    if (n > 0) return;
+    struct ninebit_vertex vertex[3];
+    memset(vertex, 0, sizeof vertex);
+    for (int k = 0; k < 3; k++) {
+        vertex[k].position[0] = position[k][0], vertex[k].position[1] = position[k][1], vertex[k].w = w[k];
+        for (int c = 0; c < 8; c++) vertex[k].color[c / 4][c % 4] = rand() & 255;
+        for (int c = 0; c < 16; c++) vertex[k].coordinate[c / 4][c % 4] = c % 4 == 3 ? w[k] : (uint32_t)(rand() & 0x7fffff) | 0x3f000000; /* 1/2 to 1 */
+    }
+    ninebit_draw0_set_up(vertex, &triangle);
+    for (int k = 0; k < TEXELS; k++) memory[k] = (uint32_t)rand() * 2654435761u;
+}
+static uint32_t pixel(int n)
+{
+    const uint32_t *const texture[4] = {memory, memory, memory, memory};
+    uint32_t word = 0, depth = 0;
+    return ninebit_draw0(&triangle, texture, places[n][0], places[n][1], &word, &depth) ? word : 0;
+}
+END
+    cc -std=c99 -O2 -o "$work/bench" "$work/bench.c"
+    printf '; whole: '
     "$work/bench"
     printf '\n'
 done
