@@ -120,9 +120,9 @@ pub(crate) fn sorted(
 impl Bins {
     /// Appends the tiles of a triangle within a window.
     fn append_tiles(&mut self, place: &Place<'_>, context: &TriangleContext<'_>, [columns, rows]: [(i64, i64); 2]) {
-        let (top, bottom) = (context.triangle.rows().0.max(rows.0), context.triangle.rows().1.min(rows.1));
+        let (top, bottom) = (context.triangle.rows.0.max(rows.0), context.triangle.rows.1.min(rows.1));
         let across = place.size[0].div_euclid(SIDE) + i64::from(place.size[0] % SIDE > 0);
-        let is_plain = context.triangle.figure() == Figure::Triangle && place.draw.polygon_stipple.is_none();
+        let is_plain = context.triangle.figure == Figure::Triangle && place.draw.polygon_stipple.is_none();
         if top >= bottom {
             return;
         }

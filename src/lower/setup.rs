@@ -60,10 +60,10 @@ impl Setup {
         constants.insert(Field::Offset, offset.mantissa);
         constants.insert(Field::OffsetExponent, if offset.mantissa == 0 { 0 } else { offset.exponent });
         let [x, y] = context.positions()[1].map(i64::from);
-        let is_point = context.triangle.figure() == Figure::Point;
+        let is_point = context.triangle.figure == Figure::Point;
         let size = if is_point { context.draw.assembly.size_of(context.number).into() } else { -1 };
         constants.extend([(Field::Sprite(0), x), (Field::Sprite(1), y), (Field::SpriteSize, size)]);
-        if context.triangle.figure() != Figure::Triangle {
+        if context.triangle.figure != Figure::Triangle {
             // Lines and points are set up otherwise.
             for (k, [a, b, c]) in context.triangle.edge_functions().into_iter().enumerate() {
                 for (field, value) in [(Field::EdgeX(k), a), (Field::EdgeY(k), b), (Field::Edge(k), c)] {

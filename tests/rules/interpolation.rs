@@ -33,7 +33,7 @@ fn examples_of_interpolation() {
     let text = "The examples of this section use one triangle: (0, 0), (96, 0), (0, 96) in pixels, w = 1.";
     assert!(read("docs/rules/arithmetic.md").contains(text), "the handbook uses another triangle");
     let triangle = of_the_section();
-    assert_eq!(triangle.doubled_area(), 1536 * 1536);
+    assert_eq!(triangle.doubled_area, 1536 * 1536);
 
     let wgt1 = beside_rows("WGT-1");
     // Returns a number in units of 2^e.
@@ -91,7 +91,7 @@ fn examples_of_depth() {
     let real = z.iter().zip(e).map(|(z, e)| z * e).sum::<i64>() * 100 / 39_321_600;
     dep1.gives("100 times the real number, floored", real, 1_380_624_884);
     let row1 = at(&triangle, 10, 1);
-    dep1.gives("64 E2", 64 * row1.e[2], triangle.doubled_area());
+    dep1.gives("64 E2", 64 * row1.e[2], triangle.doubled_area);
 
     let dep2 = beside_rows("DEP-2");
     let text =

@@ -92,7 +92,7 @@ fn errors(corners: [[f32; 2]; 3], w: [f64; 3]) -> [Errors; 2] {
     let Some(triangle) = Triangle::new(positions, true, Profile::Nv2a) else { return worst };
     let s = [0.5, 0.0, 1.0];
     let f = Linear::new(s);
-    for j in triangle.rows().0..triangle.rows().1 {
+    for j in triangle.rows.0..triangle.rows.1 {
         let (low, high) = triangle.span(j, (0, 128));
         for i in low..high {
             let e = triangle.edges(i, j);

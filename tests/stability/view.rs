@@ -148,7 +148,7 @@ pub fn visit(plan: &Plan, mut visit: impl FnMut(&Covered<'_>)) {
         for number in 0..planned.assembly.triangles.len() {
             let vertices = planned.assembly.triangle(number);
             let Some(triangle) = Triangle::new(vertices.positions(), true, plan.profile) else { continue };
-            for j in triangle.rows().0.max(rows.0)..triangle.rows().1.min(rows.1) {
+            for j in triangle.rows.0.max(rows.0)..triangle.rows.1.min(rows.1) {
                 let (low, high) = triangle.span(j, columns);
                 for i in low..high {
                     let unit = &planned.units[0];

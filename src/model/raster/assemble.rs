@@ -242,11 +242,13 @@ fn clip(vertices: &mut Vertices, triangles: &Triangles, viewport: &Viewport) -> 
             continue;
         };
         let all = vertices.triangle(triangle.vertices).all();
-        let (polygon, planes) = match triangle.figure {
-            Figure::Triangle => project::clip(&all, viewport),
-            Figure::Line => project::clip_line([all[1], all[2]], viewport),
-            Figure::Point => project::clip_point(all[1], viewport),
+        let (corners, count) = match triangle.figure {
+            Figure::Triangle => (&all[..], usize::MAX),
+            Figure::Line => (&all[1..], 2),
+            Figure::Point => (&all[1..2], 1),
         };
+        let (mut polygon, planes) = project::clip(corners, viewport);
+        polygon.truncate(count);
         clipping.planes |= planes;
         if planes == 0 {
             // A position is not a number, which is refused later.

@@ -145,12 +145,12 @@ pub fn window(clip: [f32; 4], viewport: &Viewport) -> [f32; 4] {
     ]
 }
 
-/// Clips a clip-space triangle (RAS-6). Returns what is left as a polygon in the triangle's order, and the set of
-/// planes that cut it.
+/// Clips a clip-space triangle (RAS-6), a line or a point. Returns what is left as a polygon in its order, and the set of
+/// planes that cut it. The first two vertices of a line are its ends; those after them are the same.
 ///
 /// A new vertex is always computed from the inside vertex toward the outside one, so that adjacent triangles share it.
-pub fn clip(triangle: &[Vertex; 3], viewport: &Viewport) -> (Vec<Vertex>, u8) {
-    let (mut polygon, mut planes) = (triangle.to_vec(), 0);
+pub fn clip(corners: &[Vertex], viewport: &Viewport) -> (Vec<Vertex>, u8) {
+    let (mut polygon, mut planes) = (corners.to_vec(), 0);
     let mut cut = |polygon: &mut Vec<Vertex>, plane: ClipPlane| {
         if !polygon.iter().all(|vertex| plane.inside(vertex.position, viewport)) {
             planes |= plane.bit();
@@ -166,42 +166,6 @@ pub fn clip(triangle: &[Vertex; 3], viewport: &Viewport) -> (Vec<Vertex>, u8) {
         }
     }
     (polygon, planes)
-}
-
-/// Clips a line in clip space at the planes that triangles are clipped at. Returns its ends, if anything is left, and the set of planes that cut it.
-pub fn clip_line(mut line: [Vertex; 2], viewport: &Viewport) -> (Vec<Vertex>, u8) {
-    let mut planes = 0;
-    let sides = |line: &[Vertex; 2]| match line.iter().all(|end| in_band(window(end.position, viewport))) {
-        true => &[][..],
-        false => &ClipPlane::SIDES[..],
-    };
-    for stage in [true, false] {
-        for plane in if stage { volume(viewport) } else { sides(&line) } {
-            let inside = line.map(|end| plane.inside(end.position, viewport));
-            if inside == [true; 2] {
-                continue;
-            }
-            planes |= plane.bit();
-            match inside {
-                [true, _] => line[1] = plane.crossing(&line[0], &line[1], viewport),
-                [_, true] => line[0] = plane.crossing(&line[1], &line[0], viewport),
-                _ => return (Vec::new(), planes),
-            }
-        }
-    }
-    (line.to_vec(), planes)
-}
-
-/// Clips a point in clip space. Returns it if it is left, and the set of planes that it lies beyond.
-pub fn clip_point(point: Vertex, viewport: &Viewport) -> (Vec<Vertex>, u8) {
-    let outside = |planes: &[ClipPlane]| -> u8 {
-        planes.iter().filter(|plane| !plane.inside(point.position, viewport)).map(|plane| plane.bit()).sum()
-    };
-    let mut planes = outside(volume(viewport));
-    if planes == 0 && !in_band(window(point.position, viewport)) {
-        planes = outside(&ClipPlane::SIDES);
-    }
-    (if planes == 0 { vec![point] } else { Vec::new() }, planes)
 }
 
 /// Interpolates between two vertices: a + (b - a) t for each number.

@@ -21,34 +21,24 @@ pub struct Triangle {
     /// Values of the edge functions at the centre of pixel (0, 0).
     pub(crate) c: [i64; 3],
     /// Whether a sample exactly on edge k belongs to the triangle: left edges and horizontal top edges (RAS-3).
-    pub(crate) owns: [bool; 3],
+    pub owns: [bool; 3],
     /// WGT-1: r_k, w_1 over w_k, in perspective with w that differ.
     pub(crate) ratios: Option<[Binary; 3]>,
     /// Twice the area in 1/256 square pixel, positive, below 2^34.
-    pub(crate) doubled_area: i64,
+    pub doubled_area: i64,
     /// Half-open range of the rows that can be covered.
-    pub(crate) rows: (i64, i64),
+    pub rows: (i64, i64),
     /// Half-open range of the columns that can be covered.
     pub(crate) columns: (i64, i64),
     /// Whether it turns counter-clockwise as seen on the screen.
     pub(crate) counter_clockwise: bool,
     /// What it is.
-    pub(crate) figure: Figure,
+    pub figure: Figure,
     /// The limits of a line, besides its rows and columns.
     pub(crate) sides: [Side; 4],
 }
 
 impl Triangle {
-    /// Returns twice the area in 1/256 square pixel, positive, below 2^34.
-    pub fn doubled_area(&self) -> i64 {
-        self.doubled_area
-    }
-
-    /// Returns the half-open range of the rows that can be covered.
-    pub fn rows(&self) -> (i64, i64) {
-        self.rows
-    }
-
     /// Sets up a triangle from window positions and w. Returns `None` if its area is zero after RAS-1, so that it
     /// covers nothing.
     ///
@@ -96,11 +86,6 @@ impl Triangle {
     /// Returns the three edge functions: slopes along x and y, value at the centre of pixel (0, 0).
     pub fn edge_functions(&self) -> [[i64; 3]; 3] {
         [0, 1, 2].map(|k| [self.a[k], self.b[k], self.c[k]])
-    }
-
-    /// Returns whether a sample exactly on an edge belongs to the triangle (RAS-3).
-    pub fn owns(&self) -> [bool; 3] {
-        self.owns
     }
 
     /// RAS-3: returns whether the triangle covers a sample with these edge functions.

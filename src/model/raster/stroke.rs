@@ -115,11 +115,6 @@ impl Triangle {
         point
     }
 
-    /// Returns what it is.
-    pub fn figure(&self) -> Figure {
-        self.figure
-    }
-
     /// Sets all fields that do not depend on w to those of a line between two positions in 1/16 pixel.
     pub(crate) fn place_line(&mut self, [from, to]: [[i64; 2]; 2], lines: Lines) {
         debug_assert!(from.iter().chain(&to).all(|n| n.abs() < GUARD));

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! The text is generic over [`Number`]. [`Binary`] is the definition, in integers; `f64` holds every number exactly, so
-//! that loops over it are the fast engine's (`doubles`); [`Real`] cuts nothing and is the ideal.
+//! that loops over it are the fast engine's (`doubles`).
 
 use super::binary::Binary;
 use crate::number::{Choice, Integer, LEAST_TOP};
@@ -285,60 +285,6 @@ impl<I: Integer> Number for Binary<I> {
     }
 }
 
-/// A real number: the ideal, which cuts nothing.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Real(pub f64);
-
-#[allow(clippy::float_arithmetic, reason = "the real-number reference; it never feeds a stored byte")]
-impl Number for Real {
-    type Exponent = f64;
-    type Choice = bool;
-
-    fn from_edge(edge: i64) -> Real {
-        Real(edge as f64)
-    }
-
-    fn from_f32(number: f32) -> Real {
-        Real(number.into())
-    }
-
-    fn cut(self) -> Real {
-        self
-    }
-
-    fn times(self, other: Real) -> Real {
-        Real(self.0 * other.0)
-    }
-
-    fn aligned_sum<const BITS: i32>([a, b, c]: [Real; 3]) -> Real {
-        Real(a.0 + b.0 + c.0)
-    }
-
-    fn sum_of_edges(edges: [Real; 3]) -> Real {
-        Real::aligned_sum::<29>(edges)
-    }
-
-    fn reciprocal(self) -> Real {
-        Real(1.0 / self.0)
-    }
-
-    fn rest(a: Real, b: Real) -> Real {
-        Real(1.0 - a.0 - b.0)
-    }
-
-    fn exponent(self) -> f64 {
-        self.0.exponent()
-    }
-
-    fn is_above(a: f64, b: f64) -> bool {
-        a > b
-    }
-
-    fn or(self, condition: bool, other: Real) -> Real {
-        if condition { self } else { other }
-    }
-}
-
 #[cfg(test)]
 #[allow(clippy::float_arithmetic, reason = "choosing numbers")]
 mod tests {
@@ -399,7 +345,9 @@ mod tests {
                 continue;
             }
             let corners = [w(&mut random), w(&mut random), w(&mut random)];
-            let ratios = (step % 4 > 0).then(|| super::ratios(corners.map(Binary::new)));
+            let ratios = super::ratios(corners.map(Binary::new));
+            assert_eq!(ratios.map(double), super::ratios(corners.map(f64::from)), "{corners:?}");
+            let ratios = (step % 4 > 0).then_some(ratios);
             let exact = Weights::<Binary>::new(e.map(Binary::from_edge), ratios);
             let found = Weights::<f64>::new(e.map(f64::from_edge), ratios.map(|r| r.map(double)));
             let context = || format!("{e:?} {corners:?} {exact:?} {found:?}");

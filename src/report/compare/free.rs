@@ -26,7 +26,7 @@ impl Method for Free {
         for ((rows, columns), number) in walk::triangles(draw.planned, band.rows()) {
             let fixed = TriangleContext::new(draw.plan, draw.planned, number, rows);
             let shape = Shape::new(draw.planned, number, fixed.as_ref());
-            let outer = |f: &Option<TriangleContext<'_>>| f.as_ref().map(|c| c.triangle.rows());
+            let outer = |f: &Option<TriangleContext<'_>>| f.as_ref().map(|c| c.triangle.rows);
             let spans = outer(&fixed).into_iter().chain(shape.as_ref().map(Shape::rows));
             let Some(reach) = spans.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))) else { continue };
             for j in rows.0.max(reach.0)..rows.1.min(reach.1) {
@@ -72,7 +72,7 @@ impl<'t> Shape<'t> {
     fn rows(&self) -> (i64, i64) {
         match self {
             Shape::Outline(outline) => outline.rows,
-            Shape::Stroke(triangle) => triangle.rows(),
+            Shape::Stroke(triangle) => triangle.rows,
         }
     }
 
@@ -140,7 +140,7 @@ fn real_side<L: Lane>(
     let at = band.at(i, j);
     let (e, weights) = match shape {
         // Any sample will do, because the ideal uses its own weights.
-        Shape::Outline(outline) => ([context.triangle.doubled_area(), 0, 0], Some(outline.weights(i, j))),
+        Shape::Outline(outline) => ([context.triangle.doubled_area, 0, 0], Some(outline.weights(i, j))),
         Shape::Stroke(triangle) => (triangle.edges(i, j), None),
     };
     let fragment = Fragment { pixel: (i, j), e, stored: band.words[at], weights };

@@ -169,11 +169,11 @@ impl Printed<'_> {
         wide(constants[&Field::Offset], out);
         let others = [Field::OffsetExponent, Field::Sprite(0), Field::Sprite(1), Field::SpriteSize];
         out.extend(others.map(|field| constants[&field] as u32));
-        out.push((context.triangle.figure() != Figure::Triangle).into());
+        out.push((context.triangle.figure != Figure::Triangle).into());
         context.triangle.edge_functions().iter().flatten().for_each(|n| wide(*n, out));
         let mut spans = Vec::new();
-        let top = context.triangle.rows().0.max(rows.0);
-        for j in top..context.triangle.rows().1.min(rows.1) {
+        let top = context.triangle.rows.0.max(rows.0);
+        for j in top..context.triangle.rows.1.min(rows.1) {
             let (from, to) = context.triangle.span(j, columns);
             // Stippled pixels are left out one by one.
             let mut open = None;
