@@ -4,7 +4,7 @@ use crate::plan::{Plan, PlannedDraw};
 use crate::raster::assemble::Corner;
 use crate::raster::depth::DepthPlane;
 use crate::raster::fog::FogPlane;
-use crate::raster::setup::{Triangle, centres, clockwise_area, is_front};
+use crate::raster::setup::{Triangle, clockwise_area, is_front};
 use crate::raster::stroke::{self, Figure};
 use crate::state::*;
 use crate::texture::coordinates::Coordinates;
@@ -76,30 +76,17 @@ impl<'a> TriangleContext<'a> {
     /// valid. [`complete`](Self::complete) sets up the rest.
     #[inline(always)]
     pub(super) fn set_up(&mut self, number: usize, rows: (i64, i64)) -> bool {
-        if !Self::may_cover(self.draw, number, rows) {
-            return false;
-        }
-        self.begin(number);
-        self.set_up_edges()
+        Self::may_cover(self.draw, number, rows) && self.place(number)
     }
 
     /// Returns whether triangle `number` of a draw may cover pixels in `rows`: it is not culled, it has an area, and its bounding box holds centres
     /// of pixels.
     #[inline(always)]
     pub(super) fn may_cover(draw: &PlannedDraw, number: usize, rows: (i64, i64)) -> bool {
-        if draw.assembly.triangles.figure(number) != Figure::Triangle {
-            return Self::may_stroke(draw, number, rows);
-        }
-        let (x, y) = positions(&corners(draw, number));
-        let ((left, right), (top, bottom), area) = (centres(x), centres(y), clockwise_area(x, y));
-        (bottom > rows.0.max(top)) & (top < rows.1) & (left < right) & (area != 0) & !Self::is_culled(draw, area)
-    }
-
-    /// Returns whether the box of a line or a point holds pixels in `rows`.
-    #[cold]
-    fn may_stroke(draw: &PlannedDraw, number: usize, rows: (i64, i64)) -> bool {
         let [(left, right), (top, bottom)] = [0, 1].map(|axis| draw.assembly.bounds(number, axis));
-        (bottom > rows.0.max(top)) & (top < rows.1) & (left < right)
+        let (figure, area) = (draw.assembly.triangles.figure(number), Self::clockwise_area(draw, number));
+        let is_drawn = figure != Figure::Triangle || (area != 0 && !Self::is_culled(draw, area));
+        (bottom > rows.0.max(top)) & (top < rows.1) & (left < right) & is_drawn
     }
 
     /// Returns the doubled area of triangle `number` of a draw, which is positive if it turns clockwise on the screen.
@@ -119,9 +106,9 @@ impl<'a> TriangleContext<'a> {
         }
     }
 
-    /// Takes triangle `number`, which [may cover](Self::may_cover) pixels, and the colours of its corners.
+    /// Sets up edge functions, depths and colours of triangle `number`, which [may cover](Self::may_cover) pixels. Returns `false` if its depths drop it.
     #[inline(always)]
-    fn begin(&mut self, number: usize) {
+    pub(super) fn place(&mut self, number: usize) -> bool {
         let draw = self.draw;
         self.number = number;
         let colored = match draw.shade_model {
@@ -130,24 +117,13 @@ impl<'a> TriangleContext<'a> {
         };
         self.primary = colored.map(|c| c.primary);
         self.secondary = colored.map(|c| c.secondary);
-    }
-
-    /// Returns the corners of the triangle.
-    #[inline(always)]
-    pub(super) fn corners(&self) -> [&'a Corner; 3] {
-        corners(self.draw, self.number)
-    }
-
-    /// Sets up edge functions and depths of the triangle. Returns `false` if its depths drop it.
-    #[inline(always)]
-    fn set_up_edges(&mut self) -> bool {
-        let (draw, (x, y)) = (self.draw, positions(&self.corners()));
-        match draw.assembly.triangles.figure(self.number) {
+        let (x, y) = positions(&self.corners());
+        match draw.assembly.triangles.figure(number) {
             Figure::Triangle => {
                 self.triangle.place_corners(x, y);
             }
             Figure::Line => self.triangle.place_line([[x[1], y[1]], [x[2], y[2]]], draw.assembly.lines),
-            Figure::Point => self.triangle.place_point([x[1], y[1]], draw.assembly.size_of(self.number)),
+            Figure::Point => self.triangle.place_point([x[1], y[1]], draw.assembly.size_of(number)),
         }
         if let Some(test) = &draw.depth_test {
             let (z, w) = (self.vertices().position(2), test.w_buffer.then(|| self.vertices().position(3)));
@@ -157,6 +133,12 @@ impl<'a> TriangleContext<'a> {
             }
         }
         true
+    }
+
+    /// Returns the corners of the triangle.
+    #[inline(always)]
+    pub(super) fn corners(&self) -> [&'a Corner; 3] {
+        corners(self.draw, self.number)
     }
 
     /// Sets up weights, texture coordinates and fog of a triangle that is [set up](Self::set_up) otherwise.

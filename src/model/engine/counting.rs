@@ -2,7 +2,7 @@
 
 use super::bins::within;
 use super::context::TriangleContext;
-use super::{TextureWords, cleared, walk};
+use super::{cleared, draw_defined, walk};
 use crate::plan::{Plan, PlanError, PlannedDraw};
 use crate::state::Named;
 use crate::trace::{Observer, Step, Work};
@@ -31,21 +31,12 @@ impl Observer for DrawCounts {
 /// Renders a plan on one thread, and returns the counts of each draw.
 pub fn count(plan: &Plan) -> Vec<DrawCounts> {
     let mut frames = cleared(plan);
-    let mut all = Vec::with_capacity(plan.draws.len());
-    for planned in &plan.draws {
+    let count = |planned: &PlannedDraw| {
         let mut counts = DrawCounts::default();
-        let target = &mut frames.surfaces[planned.target];
-        let width = target.width as usize;
-        let (mut words, mut depth) = (std::mem::take(&mut target.words), std::mem::take(&mut target.depth));
-        let texture_words = TextureWords::new(plan, std::slice::from_ref(planned), &frames.surfaces);
-        let textures = texture_words.images();
-        let mut band = walk::Band { first_row: 0, width, words: &mut words, depth: &mut depth };
-        (counts.fragments, counts.stored) = walk::draw(plan, planned, &textures, &mut band, &mut counts);
-        let target = &mut frames.surfaces[planned.target];
-        (target.words, target.depth) = (words, depth);
-        all.push(counts);
-    }
-    all
+        (counts.fragments, counts.stored) = draw_defined(plan, planned, &mut frames, &mut counts);
+        counts
+    };
+    plan.draws.iter().map(count).collect()
 }
 
 /// Number of pixels that a draw shades.

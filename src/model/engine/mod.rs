@@ -29,9 +29,8 @@ use crate::frame::{Frames, Surface};
 use crate::plan::{Plan, PlannedDraw};
 use crate::rop::surface;
 use crate::state::{Target, named};
-use crate::texture::planned::Image;
 use crate::threads::Team;
-use crate::trace::Silent;
+use crate::trace::{Observer, Silent};
 use bins::Bins;
 use context::TriangleContext;
 use rows::Rows;
@@ -122,16 +121,8 @@ pub struct Renderer<'a> {
     kernels: Kernels,
     team: Team,
     /// Buffers of each thread of the team.
-    blocks: Blocks,
+    blocks: Box<[Mutex<rows::Block>]>,
     groups: Vec<Group>,
-}
-
-/// Buffers of threads.
-type Blocks = Box<[Mutex<rows::Block>]>;
-
-/// Makes the buffers of some threads.
-fn blocks(threads: usize) -> Blocks {
-    (0..threads).map(|_| Mutex::default()).collect()
 }
 
 /// Neighbouring draws on one target. They are drawn band by band: all draws of a group on one band, then on the next, so that the band
@@ -163,8 +154,14 @@ impl<'a> Renderer<'a> {
             let bins = if rows.is_some() { all.iter().map(bins).collect() } else { Vec::new() };
             Group { draws, borders, bins }
         };
-        let groups = groups(plan).map(group).collect();
-        Renderer { plan, rows, kernels, blocks: blocks(team.count()), team, groups }
+        let mut first = 0;
+        let groups = plan.draws.chunk_by(|one, next| one.target == next.target).map(|draws| {
+            first += draws.len();
+            group(first - draws.len()..first)
+        });
+        let groups = groups.collect();
+        let blocks = (0..team.count()).map(|_| Mutex::default()).collect();
+        Renderer { plan, rows, kernels, blocks, team, groups }
     }
 
     /// Returns the engine that draws.
@@ -186,33 +183,7 @@ impl<'a> Renderer<'a> {
 
     /// Clears frames of [`render`](Self::render) as before the first draw, or sets their initial contents. Others are replaced.
     pub fn clear(&self, frames: &mut Frames) {
-        if !self.fits(frames) {
-            // What the system has cleared becomes the process's memory where it is first written, by each thread its own.
-            frames.surfaces = self.plan.targets.iter().map(empty).collect();
-        }
-        for (surface, target) in frames.surfaces.iter_mut().zip(&self.plan.targets) {
-            let alone = Team::new(1);
-            let team = if surface.words.len() >= SMALL { &self.team } else { &alone };
-            let rows = (surface.height as usize).div_ceil(team.count());
-            let borders = bins::equal(surface.height as usize, rows.max(1));
-            let (mut words, mut depth) = (std::mem::take(&mut surface.words), std::mem::take(&mut surface.depth));
-            let bands = bands(&borders, surface.width as usize, &mut words, &mut depth);
-            share(team, &bands, |_, (_, band)| clear(target, band));
-            drop(bands);
-            (surface.words, surface.depth) = (words, depth);
-        }
-    }
-
-    /// Returns whether frames have the sizes and the formats of the targets.
-    fn fits(&self, frames: &Frames) -> bool {
-        let fits = |(surface, target): (&Surface, &Target)| {
-            let pixels = target.width as usize * target.height as usize;
-            let depths = if target.depth.is_some() { pixels } else { 0 };
-            (surface.width, surface.height, surface.format) == (target.width, target.height, target.format)
-                && (surface.words.len(), surface.depth.len()) == (pixels, depths)
-        };
-        let (surfaces, targets) = (&frames.surfaces, &self.plan.targets);
-        surfaces.len() == targets.len() && surfaces.iter().zip(targets).all(fits)
+        clear(self.plan, &self.team, frames);
     }
 
     fn cleared(&self) -> Frames {
@@ -224,7 +195,7 @@ impl<'a> Renderer<'a> {
     /// Draws everything once more on frames of [`render`](Self::render), without clearing them. Frames of other sizes are replaced by
     /// cleared ones.
     pub fn redraw(&self, frames: &mut Frames) -> Statistics {
-        if !self.fits(frames) {
+        if !fits(self.plan, frames) {
             *frames = self.cleared();
         }
         self.draw_all(frames, &|| {})
@@ -239,53 +210,47 @@ impl<'a> Renderer<'a> {
     }
 
     /// Runs a group. Returns the number of covered pixels of each draw.
-    fn draw_group(
-        &self,
-        Group { draws, borders, bins }: &Group,
-        frames: &mut Frames,
-        band_done: &(dyn Fn() + Sync),
-    ) -> Vec<u64> {
-        let plan = self.plan;
-        let window = |index: usize| {
-            let windows = &plan.draws[index].windows;
-            windows.iter().map(|window| window.width as usize * window.height as usize).sum::<usize>()
-        };
+    fn draw_group(&self, group: &Group, frames: &mut Frames, band_done: &(dyn Fn() + Sync)) -> Vec<u64> {
+        let (plan, draws, bins) = (self.plan, &self.plan.draws[group.draws.clone()], &group.bins);
+        let windows = draws.iter().flat_map(|draw| &draw.windows);
+        let pixels: usize = windows.map(|window| window.width as usize * window.height as usize).sum();
         let alone = Team::new(1);
-        let team = if draws.clone().map(window).sum::<usize>() >= SMALL { &self.team } else { &alone };
-        let shaded: Vec<AtomicU64> = draws.clone().map(|_| AtomicU64::new(0)).collect();
-        draw_bands(plan, draws.clone(), borders, frames, (team, &self.blocks), |words| {
-            let compiled = self.rows.as_ref().map(|rows| rows.draws(plan, draws.clone(), words));
-            let (draws, shaded, kernels) = (draws.clone(), &shaded, &self.kernels);
-            move |textures: &[Image<'_, i32>], number: usize, band: &mut walk::Band<'_>, block: &mut rows::Block| {
-                for (n, (index, shaded)) in draws.clone().zip(shaded).enumerate() {
-                    let draw = &plan.draws[index];
+        let team = if pixels >= SMALL { &self.team } else { &alone };
+        let shaded: Vec<AtomicU64> = draws.iter().map(|_| AtomicU64::new(0)).collect();
+        with_surface(frames, draws[0].target, |surface, others| {
+            let texture_words = TextureWords::new(plan, draws, others);
+            let textures = texture_words.images();
+            let compiled = self.rows.as_ref().map(|rows| rows.draws(plan, group.draws.clone(), &texture_words));
+            let bands = bands(&group.borders, surface.width as usize, &mut surface.words, &mut surface.depth);
+            share(team, &bands, |thread, (number, mut band)| {
+                // A thread may come twice, but not at the same time.
+                let mut block = self.blocks[thread].lock().unwrap_or_else(PoisonError::into_inner);
+                for (n, (draw, shaded)) in draws.iter().zip(&shaded).enumerate() {
                     let pixels = match &compiled {
                         Some(_) if bins[n].triangles_in(number).is_empty() => 0,
                         Some(compiled) if !compiled[n].is_scalar => {
-                            let job = kernels.job(plan, draw, compiled[n].as_ref(), bins[n].triangles_in(number));
-                            rows::run(kernels, &job, band, block)
+                            let of = (plan, draw, compiled[n].as_ref());
+                            rows::run(&self.kernels, of, bins[n].triangles_in(number), &mut band, &mut block)
                         }
-                        _ => walk::draw(plan, draw, textures, band, &mut Silent).0,
+                        _ => walk::draw(plan, draw, &textures, &mut band, &mut Silent).0,
                     };
                     shaded.fetch_add(pixels, Ordering::Relaxed);
                     band_done();
                 }
-            }
+            });
         });
         shaded.into_iter().map(AtomicU64::into_inner).collect()
     }
 }
 
-/// Returns the draws of a plan, [grouped](Group).
-fn groups(plan: &Plan) -> impl Iterator<Item = Range<usize>> {
-    let draws = &plan.draws;
-    let mut first = 0;
-    std::iter::from_fn(move || {
-        let target = draws.get(first)?.target;
-        let count = draws[first..].iter().take_while(|draw| draw.target == target).count();
-        first += count;
-        Some(first - count..first)
-    })
+/// Calls a function with a surface, which leaves the frames meanwhile, so that the other surfaces can be read as textures.
+fn with_surface<T>(frames: &mut Frames, target: usize, of: impl FnOnce(&mut Surface, &[Surface]) -> T) -> T {
+    let Surface { width, height, format, words, depth } = &mut frames.surfaces[target];
+    let (words, depth) = (std::mem::take(words), std::mem::take(depth));
+    let mut surface = Surface { width: *width, height: *height, format: *format, words, depth };
+    let result = of(&mut surface, &frames.surfaces);
+    frames.surfaces[target] = surface;
+    result
 }
 
 /// Returns the borders of the bands in which some draws, of which there is at least one, are drawn on their target. `rows` is the wanted
@@ -312,13 +277,36 @@ fn borders(plan: &Plan, draws: &[PlannedDraw], is_fast: bool, rows: Option<usize
 
 /// Returns the surfaces after the clears, or with their initial contents.
 pub fn cleared(plan: &Plan) -> Frames {
-    let surface = |target: &Target| {
-        let mut surface = empty(target);
-        let Surface { width, words, depth, .. } = &mut surface;
-        clear(target, walk::Band { first_row: 0, width: *width as usize, words, depth });
-        surface
+    let mut frames = Frames { surfaces: Vec::new() };
+    clear(plan, &Team::new(1), &mut frames);
+    frames
+}
+
+/// Returns whether frames have the sizes and the formats of the targets.
+fn fits(plan: &Plan, frames: &Frames) -> bool {
+    let fits = |(surface, target): (&Surface, &Target)| {
+        let pixels = target.width as usize * target.height as usize;
+        let depths = if target.depth.is_some() { pixels } else { 0 };
+        (surface.width, surface.height, surface.format) == (target.width, target.height, target.format)
+            && (surface.words.len(), surface.depth.len()) == (pixels, depths)
     };
-    Frames { surfaces: plan.targets.iter().map(surface).collect() }
+    frames.surfaces.len() == plan.targets.len() && frames.surfaces.iter().zip(&plan.targets).all(fits)
+}
+
+/// Clears frames, or sets their initial contents. Those that do not fit are replaced.
+fn clear(plan: &Plan, team: &Team, frames: &mut Frames) {
+    if !fits(plan, frames) {
+        // What the system has cleared becomes the process's memory where it is first written, by each thread its own.
+        frames.surfaces = plan.targets.iter().map(empty).collect();
+    }
+    for (surface, target) in frames.surfaces.iter_mut().zip(&plan.targets) {
+        let alone = Team::new(1);
+        let team = if surface.words.len() >= SMALL { team } else { &alone };
+        let rows = (surface.height as usize).div_ceil(team.count());
+        let borders = bins::equal(surface.height as usize, rows.max(1));
+        let bands = bands(&borders, surface.width as usize, &mut surface.words, &mut surface.depth);
+        share(team, &bands, |_, (_, band)| clear_band(target, band));
+    }
 }
 
 /// Returns a surface of zeros.
@@ -329,7 +317,7 @@ fn empty(target: &Target) -> Surface {
 }
 
 /// Clears a band of a target, or sets its initial contents.
-fn clear(target: &Target, band: walk::Band<'_>) {
+fn clear_band(target: &Target, band: walk::Band<'_>) {
     let begin = |words: &mut [u32], contents: &Option<Arc<[u32]>>, cleared: u32| match contents {
         Some(contents) => words.copy_from_slice(&contents[band.first_row * band.width..][..words.len()]),
         None => words.fill(cleared),
@@ -378,41 +366,17 @@ pub fn cleared_colors(target: &Target, at: usize) -> [u8; 4] {
     std::array::from_fn(|n| if kept >> n & 1 != 0 { target.clear_color[n] } else { read[n] })
 }
 
-/// Runs draws on their target in the bands between borders. `prepare` returns what draws a band, from the words of textures.
-fn draw_bands<R>(
+/// Runs one draw by the definition, on one thread. Returns the number of covered pixels and of stored ones.
+pub(crate) fn draw_defined<O: Observer>(
     plan: &Plan,
-    draws: Range<usize>,
-    borders: &[usize],
+    draw: &PlannedDraw,
     frames: &mut Frames,
-    (team, blocks): (&Team, &Blocks),
-    prepare: impl FnOnce(&TextureWords<'_>) -> R,
-) where
-    R: Fn(&[Image<'_, i32>], usize, &mut walk::Band<'_>, &mut rows::Block) + Sync,
-{
-    let target = plan.draws[draws.start].target;
-    let surface = &mut frames.surfaces[target];
-    let width = surface.width as usize;
-    // The surface leaves the frames during the draw, so that the other surfaces can be read as textures.
-    let (mut words, mut depth) = (std::mem::take(&mut surface.words), std::mem::take(&mut surface.depth));
-    let texture_words = TextureWords::new(plan, &plan.draws[draws], &frames.surfaces);
-    let (textures, run_band) = (texture_words.images(), prepare(&texture_words));
-    let bands = bands(borders, width, &mut words, &mut depth);
-    share(team, &bands, |thread, (number, mut band)| {
-        // A thread may come twice, but not at the same time.
-        let mut block = blocks[thread].lock().unwrap_or_else(PoisonError::into_inner);
-        run_band(&textures, number, &mut band, &mut block);
-    });
-    let surface = &mut frames.surfaces[target];
-    (surface.words, surface.depth) = (words, depth);
-}
-
-/// Runs one draw by the definition, on one thread.
-pub(crate) fn draw_defined(plan: &Plan, index: usize, frames: &mut Frames) {
-    let draw = &plan.draws[index];
-    let borders = bins::equal(frames.surfaces[draw.target].height as usize, BAND);
-    draw_bands(plan, index..index + 1, &borders, frames, (&Team::new(1), &blocks(1)), |_| {
-        |textures: &[Image<'_, i32>], _, band: &mut walk::Band<'_>, _: &mut rows::Block| {
-            walk::draw(plan, draw, textures, band, &mut Silent);
-        }
-    });
+    observer: &mut O,
+) -> (u64, u64) {
+    with_surface(frames, draw.target, |surface, others| {
+        let words = TextureWords::new(plan, std::slice::from_ref(draw), others);
+        let Surface { width, words: own, depth, .. } = surface;
+        let mut band = walk::Band { first_row: 0, width: *width as usize, words: own, depth };
+        walk::draw(plan, draw, &words.images(), &mut band, observer)
+    })
 }

@@ -11,7 +11,7 @@ use crate::plan::{Plan, PlannedDraw};
 use crate::state::Rectangle;
 use crate::texture::planned::Image;
 use crate::threads::on_threads;
-use crate::trace::{Observer, Step, Unit};
+use crate::trace::{Observer, Silent, Step, Unit};
 #[cfg(feature = "threads")]
 use rayon::prelude::*;
 
@@ -99,9 +99,8 @@ pub const FRAGMENT_NAMES: [&str; 3] = ["fragment.draw", "fragment.triangle", "fr
 /// # Errors
 /// The target or the draw does not exist, or the rectangle is not inside the target.
 pub fn planes(plan: &Plan, names: &[String], options: &PlaneOptions) -> Result<Vec<Plane>, TraceError> {
-    let wanted = NameFilter::new(names);
     let record = |pixels| Values {
-        wanted: &wanted,
+        names,
         planes: vec![Plane::blank(pixels, options.ideal); names.len()],
         found: vec![None; names.len()],
     };
@@ -151,63 +150,9 @@ struct Value {
     unit: Unit,
 }
 
-/// The first bytes of a text, the first of them the most significant, and their number.
-#[derive(Clone, Copy, PartialEq, Eq)]
-struct Beginning {
-    bytes: u128,
-    count: usize,
-}
-
-impl Beginning {
-    const BYTES: usize = 16;
-
-    /// Returns the beginning of parts that are joined.
-    #[inline]
-    fn new(parts: &[&str]) -> Beginning {
-        let (mut bytes, mut count) = (0_u128, 0);
-        for part in parts {
-            for byte in part.bytes().take(Beginning::BYTES - count) {
-                bytes = bytes << 8 | u128::from(byte);
-                count += 1;
-            }
-        }
-        // Nothing cannot be shifted by all bits.
-        Beginning { bytes: bytes.checked_shl(8 * (Beginning::BYTES - count) as u32).unwrap_or(0), count }
-    }
-
-    /// Returns whether one of some texts may begin with this one: bytes after the sixteenth are not compared.
-    #[inline]
-    fn begins_any(self, texts: &[u128]) -> bool {
-        let mask = !u128::MAX.checked_shr(8 * self.count as u32).unwrap_or(0);
-        // Without branches, which some ten texts are not worth.
-        texts.iter().fold(false, |any, text| any | ((self.bytes ^ text) & mask == 0))
-    }
-}
-
-/// Names whose values are kept, prepared for the comparison with every step of every pixel.
-struct NameFilter<'a> {
-    names: &'a [String],
-    beginnings: Vec<Beginning>,
-    /// Which of [`FRAGMENT_NAMES`] each name is.
-    own: Vec<Option<usize>>,
-    /// The beginnings in ascending order, each once.
-    sorted: Vec<u128>,
-}
-
-impl<'a> NameFilter<'a> {
-    fn new(names: &'a [String]) -> NameFilter<'a> {
-        let beginnings: Vec<Beginning> = names.iter().map(|name| Beginning::new(&[name])).collect();
-        let mut sorted: Vec<u128> = beginnings.iter().map(|beginning| beginning.bytes).collect();
-        sorted.sort_unstable();
-        sorted.dedup();
-        let own = names.iter().map(|name| FRAGMENT_NAMES.iter().position(|own| own == name)).collect();
-        NameFilter { names, beginnings, own, sorted }
-    }
-}
-
 /// Keeps the values of some names.
 struct Values<'a> {
-    wanted: &'a NameFilter<'a>,
+    names: &'a [String],
     planes: Vec<Plane>,
     /// Values of the fragment that is shaded.
     found: Vec<Option<Value>>,
@@ -217,19 +162,18 @@ impl Observer for Values<'_> {
     const ON: bool = true;
 
     fn wants(&self, parts: &[&str]) -> bool {
-        let (beginning, sorted) = (Beginning::new(parts), &self.wanted.sorted[..]);
-        if sorted.len() <= 16 {
-            return beginning.begins_any(sorted);
-        }
-        // Of all names that are not less, the least begins so if any does.
-        let least = sorted.partition_point(|name| *name < beginning.bytes);
-        beginning.begins_any(&sorted[least..sorted.len().min(least + 1)])
+        self.names.iter().any(|name| {
+            let mut rest = Some(name.as_str());
+            for part in parts {
+                rest = rest.and_then(|rest| rest.strip_prefix(part));
+            }
+            rest.is_some()
+        })
     }
 
     fn step(&mut self, step: Step) {
-        let beginning = Beginning::new(&[&step.name]);
-        for (n, found) in self.found.iter_mut().enumerate() {
-            if self.wanted.beginnings[n] == beginning && self.wanted.names[n] == step.name {
+        for (name, found) in self.names.iter().zip(&mut self.found) {
+            if *name == step.name {
                 let ideal = step.ideal.unwrap_or(f64::NAN);
                 *found = Some(Value { value: step.value, ideal, unit: step.unit() });
             }
@@ -243,10 +187,11 @@ impl Record for Values<'_> {
     }
 
     fn end(&mut self, pixel: usize, fragment: [i64; 3]) {
-        for (n, own) in self.wanted.own.iter().enumerate() {
-            let own =
-                own.map(|at| Value { value: fragment[at], ideal: f64::NAN, unit: Unit { per_one: 1, exponent: 0 } });
-            if let Some(value) = own.or(self.found[n]) {
+        for (n, name) in self.names.iter().enumerate() {
+            let own = FRAGMENT_NAMES.iter().position(|own| own == name);
+            let whole =
+                |at: usize| Value { value: fragment[at], ideal: f64::NAN, unit: Unit { per_one: 1, exponent: 0 } };
+            if let Some(value) = own.map(whole).or(self.found[n]) {
                 self.planes[n].put(pixel, value);
             }
         }
@@ -329,7 +274,9 @@ fn observe<L: Lane + Sync, R: Record>(
         let mut finished = 0;
         for (index, planned) in plan.draws.iter().enumerate().filter(|(_, planned)| planned.target == options.target) {
             if rendered {
-                (finished..index).for_each(|before| draw_defined(plan, before, &mut frames));
+                for before in &plan.draws[finished..index] {
+                    draw_defined(plan, before, &mut frames, &mut Silent);
+                }
                 finished = index;
             }
             let words = TextureWords::new(plan, std::slice::from_ref(planned), &frames.surfaces);

@@ -281,7 +281,9 @@ impl<'a> Tracer<'a> {
         let mut finished = 0;
         for (index, planned) in self.draws() {
             if rendered {
-                (finished..index).for_each(|before| draw_defined(plan, before, &mut frames));
+                for before in &plan.draws[finished..index] {
+                    draw_defined(plan, before, &mut frames, &mut Silent);
+                }
                 finished = index;
             }
             let texture_words = TextureWords::new(plan, std::slice::from_ref(planned), &frames.surfaces);

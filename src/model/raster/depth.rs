@@ -195,7 +195,13 @@ fn interpolate_w(e: [i64; 3], w: [f32; 3]) -> Binary {
 /// of the others.
 pub fn w_depth<N: Number>(e: [N; 3], ratios: [N; 3], w: Linear<N>, cut_rest: impl FnOnce(N, N) -> N) -> N {
     let edges = edge_numbers(e, Some(ratios));
-    let b = completed_by(shares(edges, N::sum_of_edges(edges).reciprocal()), cut_rest);
+    w_of_shares(shares(edges, N::sum_of_edges(edges).reciprocal()), w, cut_rest)
+}
+
+/// DEP-6: returns the same of the shares of the vertices.
+#[inline(always)]
+pub(crate) fn w_of_shares<N: Number>(shares: [N; 3], w: Linear<N>, cut_rest: impl FnOnce(N, N) -> N) -> N {
+    let b = completed_by(shares, cut_rest);
     sum_of_products([[b[0], w.first], [N::from_edge(1), w.second], [b[2], w.third]])
 }
 

@@ -41,13 +41,13 @@ pub const SQUARED: [u8; 33] = [
 
 /// The fog of a triangle, set up from its vertices.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum FogPlane {
+pub enum FogPlane<N = Binary> {
     /// Factors, limited to 0..1 (INT-5n).
-    Factor(Linear<Binary>),
+    Factor(Linear<N>),
     /// d', or e of INT-5n, for a linear function (FOG-2).
-    Linear(Line, Linear<Binary>),
+    Linear(Line, Linear<N>),
     /// e, for a table (FOG-4).
-    Exponential(FogMode, Linear<Binary>),
+    Exponential(FogMode, Linear<N>),
     /// Some value is not finite. Holds the byte of all pixels (FOG-4, FOG-5).
     NotFinite(u8),
 }
@@ -112,9 +112,9 @@ pub fn limited(factor: f32) -> f32 {
     if factor.is_nan() { 0.0 } else { factor.clamp(0.0, 1.0) }
 }
 
-impl FogPlane {
+impl<N: Number> FogPlane<N> {
     /// Sets up the fog of a triangle from the values of its vertices: factors, or the d' or e of the function.
-    pub fn new(function: Option<FogFunction>, vertices: [f32; 3]) -> FogPlane {
+    pub fn new(function: Option<FogFunction>, vertices: [f32; 3]) -> FogPlane<N> {
         let Some(function) = function else {
             return FogPlane::Factor(Linear::new(vertices.map(limited)));
         };
@@ -125,7 +125,9 @@ impl FogPlane {
             _ => FogPlane::NotFinite(not_finite(function.mode)),
         }
     }
+}
 
+impl FogPlane {
     /// Returns the fog at a sample that the triangle covers.
     #[inline]
     pub fn at(&self, sample: &Sample<'_>) -> FogFactor {
@@ -329,11 +331,11 @@ mod tests {
                 let far = FogPlane::new(Some(function(*mode)), [0.0, beyond, 1.0]);
                 assert_eq!(far.at(&sample), FogFactor { byte: expected, from: FogStep::NotFinite });
             }
-            let plain = FogPlane::new(Some(function(*mode)), [0.0, 2.0, 1.0]);
+            let plain: FogPlane = FogPlane::new(Some(function(*mode)), [0.0, 2.0, 1.0]);
             assert!(!matches!(plain, FogPlane::NotFinite(_)));
         }
         let steep = FogFunction { p0: f32::NAN, ..function(FogMode::Linear) };
-        assert_eq!(FogPlane::new(Some(steep), [0.0, 2.0, 1.0]), FogPlane::NotFinite(255));
+        assert_eq!(FogPlane::<Binary>::new(Some(steep), [0.0, 2.0, 1.0]), FogPlane::NotFinite(255));
     }
 
     /// Values of the light unit reach the ends of single precision: e may be far outside the table, also beside small

@@ -207,25 +207,8 @@ pub(super) fn scene(
     inputs[0].register = FinalRegister::PrimaryColor;
     inputs[1].register = FinalRegister::Texture3;
     let draw = Draw {
-        name: String::new(),
-        target: 0,
-        positions: Positions::Window,
         indices: (0..vertices.len() as u32).collect(),
         vertices: vertices.into(),
-        topology: Topology::Triangles,
-        shade_model: ShadeModel::Smooth,
-        provoking_vertex: ProvokingVertex::First,
-        perspective: true,
-        cull: Cull::None,
-        front_face: FrontFace::CounterClockwise,
-        polygon_modes: PolygonModes::FILL,
-        edge_flags: None,
-        polygon_stipple: None,
-        lines: Lines::default(),
-        point_size: 8,
-        point_sizes: None,
-        point_sprite: false,
-        scissor: None,
         fog: Fog { enabled: true, color: [0; 3], function: fog },
         textures: [
             flat,
@@ -234,38 +217,22 @@ pub(super) fn scene(
             with_r.or(mixed(2)),
         ],
         texture_shader: [0, 1, 2, 3].map(|unit| ShaderStage::conventional(unit, true)),
-        vertex_program: None,
         combiners: Combiners {
             stages: vec![stage],
-            mux_select: MuxSelect::Msb,
             final_combiner: FinalCombiner {
                 inputs,
                 g: FinalInput { register: FinalRegister::Fog, ..FinalInput::zero(Component::Alpha) },
                 color_sum_clamp: false,
-                invert_spare0: false,
-                invert_secondary: false,
-                constants: [[0; 4]; 2],
+                ..FinalCombiner::default()
             },
+            ..Combiners::default()
         },
-        program_origin: vec![],
-        alpha_test: None,
-        stencil_test: None,
-        window_clip: None,
         depth_test: Some(DepthTest { w_buffer, ..DepthTest::new(CompareFunction::Always, true) }),
-        blend: None,
-        blend_constant: [0; 4],
-        color_mask: [true; 4],
+        ..Draw::default()
     };
     let target = Target {
-        name: String::new(),
-        width: WIDTH,
-        height: HEIGHT,
-        format: SurfaceFormat::A8R8G8B8,
-        clear_color: [0; 4],
-        contents: None,
-        depth_contents: None,
         depth: Some(DepthBuffer { format: depth, clear: 0, clear_stencil: 0 }),
-        clip: None,
+        ..Target::new(WIDTH, HEIGHT, SurfaceFormat::A8R8G8B8)
     };
     Scene {
         profile: Profile::Nv2a,

@@ -1,16 +1,14 @@
 //! The parts of the engine that are compiled for each instruction set: lanes of a triangle, and blocks to the surface.
 
-use super::job::Job;
-use super::triangle::{self, Functions};
+use super::Job;
+use super::triangle::Functions;
 use crate::engine::context::TriangleContext;
 use crate::engine::rows::geometry::shape::Shape;
-use crate::engine::rows::geometry::spans::{self, Spans};
 use crate::engine::rows::geometry::weights::Pixels;
 use crate::engine::rows::interpolate::colors::ColorWeights;
 use crate::engine::rows::interpolate::depths;
-use crate::engine::rows::interpolate::estimates::Undecided;
 use crate::engine::rows::lanes::{BLOCK, PerLane, Run};
-use crate::engine::rows::sampling::fetch::{Reader, Workspace};
+use crate::engine::rows::sampling::fetch::Workspace;
 use crate::engine::rows::sampling::place::Place;
 use crate::engine::rows::sampling::quads::Quads;
 use crate::engine::rows::shading::compiled::CompiledDraw;
@@ -18,8 +16,6 @@ use crate::engine::rows::shading::kernels;
 use crate::engine::rows::shading::stages::{Stages, Workshop};
 use crate::engine::rows::store;
 use crate::engine::walk::Band;
-use crate::raster::setup::Triangle;
-use std::ops::Range;
 
 /// The buffers of a thread. They are kept from draw to draw.
 #[derive(Debug, Default)]
@@ -27,7 +23,6 @@ pub(crate) struct Block {
     pub(crate) rows: Vec<PerLane<i16>>,
     pub(crate) pixels: Pixels,
     pub(crate) functions: Functions,
-    pub(crate) undecided: Undecided,
     /// W0 and W2.
     pub(crate) colors: ColorWeights,
     /// Where each sampler samples.
@@ -77,38 +72,8 @@ pub(crate) fn begin<const FMA: bool>(compiled: &CompiledDraw, block: &mut Block,
     }
 }
 
-/// Finds the columns that a triangle covers in some rows.
-#[inline(always)]
-pub(crate) fn find_spans<const FMA: bool>(shape: &Shape, top: i64, columns: (i64, i64), spans: &mut Spans) {
-    *spans = spans::of_triangle(shape, top, columns);
-}
-
-/// Finds the columns that a line covers in some rows.
-#[inline(always)]
-pub(crate) fn find_line_spans<const FMA: bool>(line: &Triangle, top: i64, columns: (i64, i64), spans: &mut Spans) {
-    *spans = spans::of_line(line, top, columns);
-}
-
-/// Sets up the functions of a triangle.
-#[inline(always)]
-pub(crate) fn set_up<const FMA: bool>(context: &TriangleContext<'_>, shape: &Shape, job: &Job<'_>, block: &mut Block) {
-    block.functions.set(context, shape, job.compiled);
-}
-
-/// Interpolates everything that a draw reads in some lanes of a triangle.
-#[inline(always)]
-pub(crate) fn interpolate<const FMA: bool>(
-    context: &TriangleContext<'_>,
-    shape: &Shape,
-    job: &Job<'_>,
-    block: &mut Block,
-    lanes: Range<usize>,
-) {
-    triangle::interpolate(context, shape, job, block, lanes);
-}
-
 /// Computes the depths of the lanes from the first one on, whose pixels are those of the runs from the first one on, and tests them if nothing
-/// else drops fragments. Runs that the test drops whole are taken out of the block, unless quads need them.
+/// else drops fragments. If the test drops all, they are taken out of the block.
 #[inline(always)]
 pub(crate) fn test_depths<const FMA: bool>(
     context: &TriangleContext<'_>,
@@ -118,44 +83,21 @@ pub(crate) fn test_depths<const FMA: bool>(
     (lane, first): (usize, usize),
     band: &mut Band<'_>,
 ) {
-    let Block { pixels, incoming, alive, runs, depth, used, .. } = &mut *block;
+    let Block { pixels, incoming, alive, runs, depth, used, .. } = block;
     let lanes = lane..lane + (*used - lane).next_multiple_of(8);
     depths::depths(context, shape, lanes.clone(), pixels, incoming);
-    let runs = &runs[first..];
     if job.compiled.drops_late {
-        let may_pass = |run: &Run| store::may_pass(job.draw, &incoming[run.lanes()], &band.depth[run.at()..]);
-        if !runs.iter().any(may_pass) {
-            block.take_out(job.compiled, first, |_| false);
-        }
         return;
     }
-    store::read_runs(band.depth, runs, depth.block_mut());
-    let (memory, of_lanes) = (&mut depth[lanes.clone()], &mut alive[lanes.clone()]);
-    store::test_early(job.draw, &incoming[lanes], memory, of_lanes);
-    store::write_runs(depth.block(), runs, band.depth);
-    let alive = alive.clone();
-    let is_visible = |run: &Run| alive[run.lanes()].contains(&true);
-    let takes_quads = job.compiled.takes_quads;
-    if !runs.iter().all(is_visible) && (!takes_quads || !runs.iter().any(is_visible)) {
-        block.take_out(job.compiled, first, is_visible);
+    let own = &runs[first..];
+    store::read_runs(band.depth, own, depth.block_mut());
+    store::test_early(job.draw, &incoming[lanes.clone()], &mut depth[lanes.clone()], &mut alive[lanes]);
+    store::write_runs(depth.block(), own, band.depth);
+    if !own.iter().any(|run| alive[run.lanes()].contains(&true)) {
+        (*used, _) = (lane, runs.truncate(first));
     }
     // Lanes past the end are those of the next triangle.
-    let end = if block.runs.len() == first { lane } else { block.used };
-    block.alive[end..].fill(true);
-}
-
-/// Samples a unit.
-#[inline(always)]
-pub(crate) fn sample<const FMA: bool>(
-    reader: Reader<'_>,
-    pixels: &Pixels,
-    place: &mut Place,
-    quads: &mut Quads,
-    work: &mut Workspace,
-    alive: &mut [bool],
-    rows: &mut [PerLane<i16>],
-) {
-    reader.sample(pixels, place, quads, work, alive, rows);
+    alive[*used..].fill(true);
 }
 
 /// Runs the stages of the texture shader for a block.
@@ -217,8 +159,12 @@ pub(crate) fn flush<const WIDE: bool>(job: &Job<'_>, block: &mut Block, band: &m
 impl Block {
     /// Adds pixels of a row as lanes.
     #[inline(always)]
-    pub(crate) fn add(&mut self, (i, j): (i64, i64), count: usize) {
+    pub(crate) fn add(&mut self, compiled: &CompiledDraw, (i, j): (i64, i64), count: usize) {
         let lanes = self.used..self.used + count;
+        self.used = lanes.end;
+        if !compiled.interpolates {
+            return;
+        }
         // Whole vectors, of which the next row overwrites what is too much.
         let beyond = lanes.start..lanes.start + count.next_multiple_of(8);
         for (first, x) in (i as i32..).step_by(8).zip(self.pixels.x[beyond.clone()].as_chunks_mut::<8>().0) {
@@ -227,34 +173,5 @@ impl Block {
         for y in self.pixels.y[beyond].as_chunks_mut::<8>().0 {
             *y = [j as f64; 8];
         }
-        self.used = lanes.end;
-    }
-
-    /// Takes runs from the first one on out of the block, of which a function says whether they stay.
-    fn take_out(&mut self, compiled: &CompiledDraw, first: usize, stays: impl Fn(&Run) -> bool) {
-        let mut kept = first;
-        let mut lane = self.runs[first].lane();
-        for n in first..self.runs.len() {
-            let run = self.runs[n];
-            if !stays(&run) {
-                if compiled.reads_surface {
-                    store::mark(&mut self.taken, &[run]);
-                }
-                continue;
-            }
-            self.pixels.x.copy_within(run.lanes(), lane);
-            self.pixels.y.copy_within(run.lanes(), lane);
-            self.alive.copy_within(run.lanes(), lane);
-            self.runs[kept] = Run::new(lane, run.at() as u32, run.count());
-            (kept, lane) = (kept + 1, lane + run.count());
-        }
-        self.runs.truncate(kept);
-        self.used = lane;
-    }
-
-    /// Returns whether the block has lanes for some of these pixels already.
-    #[inline(always)]
-    pub(crate) fn is_taken(&self, band: &Band<'_>, pixel: (i64, i64), count: usize) -> bool {
-        store::is_marked(&self.taken, band.index(pixel) as usize, count)
     }
 }

@@ -1,20 +1,19 @@
 //! Compiles the engine for several instruction sets, and chooses one at run time.
 
 use super::block::{self, Block};
-use super::job::Job;
+use super::{Job, triangle};
 use crate::engine::context::TriangleContext;
 use crate::engine::rows::geometry::shape::Shape;
-use crate::engine::rows::geometry::spans::Spans;
+use crate::engine::rows::geometry::spans::{self, Spans};
 use crate::engine::rows::geometry::weights::Pixels;
 use crate::engine::rows::lanes::{BLOCK, Lanes, PerLane};
-use crate::engine::rows::sampling::fetch::{Reader, Workspace};
+use crate::engine::rows::sampling::fetch::{self, Reader, Workspace};
 use crate::engine::rows::sampling::filter::{self, Footprint};
 use crate::engine::rows::sampling::place::Place;
 use crate::engine::rows::sampling::quads::Quads;
 use crate::engine::rows::sampling::table::Column;
 use crate::engine::rows::shading::compiled::CompiledDraw;
 use crate::engine::walk::Band;
-use crate::plan::{Plan, PlannedDraw};
 use crate::raster::setup::Triangle;
 use crate::state::{Named, named};
 use multiversion::target::match_target;
@@ -54,20 +53,6 @@ impl Isa {
     /// Returns the widest instruction set of this machine.
     pub fn best() -> Isa {
         Isa::ALL.iter().rev().copied().find(|isa| isa.is_available()).unwrap_or(Isa::Baseline)
-    }
-}
-
-impl Kernels {
-    /// Returns the job of drawing triangles of a draw.
-    pub(crate) fn job<'a>(
-        &self,
-        plan: &'a Plan,
-        draw: &'a PlannedDraw,
-        compiled: &'a CompiledDraw,
-        triangles: &'a [u32],
-    ) -> Job<'a> {
-        let Kernels { filter, sample, .. } = *self;
-        Job { plan, draw, compiled, triangles, filter, sample }
     }
 }
 
@@ -121,12 +106,11 @@ kernels! {
     }
     {
         fn block::begin(compiled: &CompiledDraw, block: &mut Block, band: &Band<'_>);
-        fn block::find_spans(shape: &Shape, top: i64, columns: (i64, i64), spans: &mut Spans);
-        fn block::find_line_spans(line: &Triangle, top: i64, columns: (i64, i64), spans: &mut Spans);
-        fn block::set_up(context: &TriangleContext<'_>, shape: &Shape, job: &Job<'_>, block: &mut Block);
+        fn spans::find_spans(figure: &Triangle, top: i64, columns: (i64, i64)) -> Spans;
+        fn triangle::set_up(context: &TriangleContext<'_>, shape: &Shape, job: &Job<'_>, block: &mut Block);
         fn block::test_depths(context: &TriangleContext<'_>, shape: &Shape, job: &Job<'_>, block: &mut Block, of: (usize, usize), band: &mut Band<'_>);
-        fn block::interpolate(context: &TriangleContext<'_>, shape: &Shape, job: &Job<'_>, block: &mut Block, lanes: Range<usize>);
-        fn block::sample(reader: Reader<'_>, pixels: &Pixels, place: &mut Place, quads: &mut Quads, work: &mut Workspace, alive: &mut [bool], rows: &mut [PerLane<i16>]);
+        fn triangle::interpolate(context: &TriangleContext<'_>, shape: &Shape, job: &Job<'_>, block: &mut Block, lanes: Range<usize>);
+        fn fetch::sample(reader: Reader<'_>, pixels: &Pixels, place: &mut Place, quads: &mut Quads, work: &mut Workspace, alive: &mut [bool], rows: &mut [PerLane<i16>]);
         fn filter::filter(lanes: Lanes, columns: &[Column], entries: &[u32; BLOCK], at: [&[i32; BLOCK]; 2], footprints: &mut [Footprint; BLOCK], channels: [&mut [i16; BLOCK]; 4]);
         fn block::shade(job: &Job<'_>, block: &mut Block);
         fn block::flush(job: &Job<'_>, block: &mut Block, band: &mut Band<'_>);

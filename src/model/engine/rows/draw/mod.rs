@@ -12,7 +12,6 @@
 mod block;
 mod compile;
 mod isa;
-mod job;
 mod triangle;
 
 pub(crate) use block::Block;
@@ -22,29 +21,45 @@ pub(crate) use isa::Kernels;
 
 use crate::engine::context::TriangleContext;
 use crate::engine::rows::geometry::shape::Shape;
-use crate::engine::rows::geometry::spans::{ROWS, Spans};
+use crate::engine::rows::geometry::spans::ROWS;
 use crate::engine::rows::lanes::{BLOCK, Lanes, Run};
-use crate::engine::rows::sampling::fetch::Reader;
+use crate::engine::rows::sampling::fetch::{Reader, SampleUnit};
+use crate::engine::rows::sampling::filter::Filter;
 use crate::engine::rows::sampling::quads::PixelQuads;
+use crate::engine::rows::shading::compiled::CompiledDraw;
 use crate::engine::rows::store;
 use crate::engine::walk::{self, Band, Window};
+use crate::plan::{Plan, PlannedDraw};
 use crate::raster::stroke::{self, Figure};
 use crate::state::PolygonStipple;
-use job::Job;
 
-/// Draws the part of a draw that lies in a band. Returns the number of covered pixels.
-pub(crate) fn run(kernels: &Kernels, job: &Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
-    let Job { plan, draw, compiled, .. } = *job;
+/// The parts of a draw that are the same for all of its blocks, for the parts of the engine that are compiled for each instruction set.
+#[derive(Clone, Copy)]
+pub(crate) struct Job<'a> {
+    plan: &'a Plan,
+    draw: &'a PlannedDraw,
+    compiled: &'a CompiledDraw,
+    filter: Filter,
+    sample: SampleUnit,
+}
+
+/// Draws the part of a draw that lies in a band, of which triangles are given that may cover pixels, in order. Returns the number of covered pixels.
+pub(crate) fn run(
+    kernels: &Kernels,
+    (plan, draw, compiled): (&Plan, &PlannedDraw, &CompiledDraw),
+    triangles: &[u32],
+    band: &mut Band<'_>,
+    block: &mut Block,
+) -> u64 {
+    let Kernels { filter, sample, .. } = *kernels;
+    let job = &Job { plan, draw, compiled, filter, sample };
     let rows = band.rows();
-    if walk::windows(draw, rows).next().is_none() {
-        return 0;
-    }
     (kernels.begin)(compiled, block, band);
     let mut context = TriangleContext::vacant(plan, draw);
     let mut drawing = Drawing { kernels, job, band, block, shaded: 0, stipple: None };
     for window in walk::windows(draw, rows) {
-        for number in job.triangles {
-            if context.set_up(*number as usize, window.0) {
+        for number in triangles {
+            if context.place(*number as usize) {
                 drawing.triangle(window, &context);
             }
         }
@@ -68,7 +83,8 @@ struct Drawing<'d, 'b> {
 /// A triangle and its lanes in the block.
 struct Drawn<'t> {
     context: &'t TriangleContext<'t>,
-    shape: Shape,
+    /// Its geometry, once it is needed.
+    shape: Option<Shape>,
     /// The first lane, run and entry of quads that belong to it.
     lane: usize,
     run: usize,
@@ -88,20 +104,11 @@ impl Drawing<'_, '_> {
         if rows.0 >= rows.1 || columns.0 >= columns.1 {
             return;
         }
-        let w = context.corners().map(|corner| corner.w);
-        let shape = Shape::new(triangle, w, (draw.perspective, self.job.plan.profile), takes_quads);
         let (lane, run, quads) = (self.block.used, self.block.runs.len(), self.block.quads.len());
-        let mut drawn = Drawn { context, shape, lane, run, quads, is_set_up: false };
-        let mut spans = Spans::default();
+        let mut drawn = Drawn { context, shape: None, lane, run, quads, is_set_up: false };
         // Even, so that no quad is divided.
         for top in (rows.0 & !1..rows.1).step_by(ROWS) {
-            match triangle.figure {
-                Figure::Triangle => (self.kernels.find_spans)(&drawn.shape, top, columns, &mut spans),
-                Figure::Line => (self.kernels.find_line_spans)(triangle, top, columns, &mut spans),
-                Figure::Point => {
-                    (spans.first, spans.end) = ([columns.0 as i32; ROWS], [columns.1 as i32; ROWS]);
-                }
-            }
+            let spans = (self.kernels.find_spans)(triangle, top, columns);
             let count = (rows.1 - top).min(ROWS as i64) as usize;
             let span = |n: usize| {
                 let is_drawn = n < count && top + n as i64 >= rows.0;
@@ -130,7 +137,7 @@ impl Drawing<'_, '_> {
             }
             let count = count.min(BLOCK - self.block.used);
             let lane = self.block.used;
-            self.block.add((i, j), count);
+            self.block.add(self.job.compiled, (i, j), count);
             self.cover((i, j), lane, count);
             i += count as i64;
         }
@@ -160,7 +167,7 @@ impl Drawing<'_, '_> {
             let (upper, lower) = (self.block.used, self.block.used + columns as usize);
             self.block.quads.add(PixelQuads { upper, lower, count: columns as usize / 2 });
             for (n, first) in [upper, lower].into_iter().enumerate() {
-                self.block.add((low, top + n as i64), columns as usize);
+                self.block.add(self.job.compiled, (low, top + n as i64), columns as usize);
                 if count(n) > 0 {
                     self.cover(at(n), first + (covered[n].0 - low) as usize, count(n));
                 }
@@ -212,6 +219,13 @@ impl Drawing<'_, '_> {
             (block.used, _) = (*lane, block.quads.truncate(*quads));
             return;
         }
+        if !job.compiled.interpolates {
+            return;
+        }
+        let shape = shape.get_or_insert_with(|| {
+            let w = context.corners().map(|corner| corner.w);
+            Shape::new(&context.triangle, w, (job.draw.perspective, job.plan.profile), job.compiled.takes_quads)
+        });
         if job.draw.depth_test.is_some() {
             (kernels.test_depths)(context, shape, job, block, (*lane, *run), self.band);
             if block.runs.len() == *run {
@@ -237,7 +251,7 @@ impl Drawing<'_, '_> {
     /// Returns whether the draw reads the surface and the block has lanes for some of these pixels already.
     #[inline(always)]
     fn is_taken(&self, pixel: (i64, i64), count: usize) -> bool {
-        self.job.compiled.reads_surface && self.block.is_taken(self.band, pixel, count)
+        self.job.compiled.reads_surface && store::is_marked(&self.block.taken, self.band.index(pixel) as usize, count)
     }
 
     /// Computes a block and stores it.

@@ -1,15 +1,16 @@
 //! Everything that varies across a triangle, for the lanes that it has in a block.
 
+use super::Job;
 use super::block::Block;
-use super::job::Job;
 use crate::engine::context::TriangleContext;
 use crate::engine::rows::geometry::shape::Shape;
 use crate::engine::rows::interpolate::coordinates::Coordinates;
 use crate::engine::rows::interpolate::estimates::Estimates;
-use crate::engine::rows::interpolate::fog::Fog;
+use crate::engine::rows::interpolate::fog::factors;
 use crate::engine::rows::interpolate::sprites::Sprite;
 use crate::engine::rows::interpolate::{Weighted, colors, numbers};
 use crate::engine::rows::shading::compiled::CompiledDraw;
+use crate::raster::fog::FogPlane;
 use crate::raster::stroke::Figure;
 use crate::raster::weights::Linear;
 use std::ops::Range;
@@ -22,7 +23,7 @@ pub(crate) struct Functions {
     sprite: Sprite,
     /// Numbers of the texture shader.
     numbers: Vec<Linear<f64>>,
-    fog: Option<Fog>,
+    fog: Option<FogPlane<f64>>,
     /// Floors of colour weights and coordinates, if the triangle has no other function and all are estimated.
     estimates: Estimates,
     is_estimated: bool,
@@ -48,15 +49,21 @@ impl Functions {
             let set = compiled.shader.as_ref().map_or(0, |shader| shader.stages[*stage].state.coordinate_set);
             self.numbers.push(Linear::new(vertices.coordinate(set, *component)));
         }
-        self.fog = compiled.fog.map(|_| Fog::new(draw.fog.function.as_ref(), vertices.fog()));
+        self.fog = compiled.fog.map(|_| FogPlane::new(draw.fog.function, vertices.fog()));
         let is_plain = compiled.shader.is_none() && self.fog.is_none() && !compiled.takes_quads;
         self.is_estimated = is_plain && self.estimates.set(shape, &compiled.samplers, &self.coordinates);
     }
 }
 
-/// Interpolates everything that a draw reads in some lanes.
+/// Sets up the functions of a triangle.
 #[inline(always)]
-pub(crate) fn interpolate(
+pub(crate) fn set_up<const FMA: bool>(context: &TriangleContext<'_>, shape: &Shape, job: &Job<'_>, block: &mut Block) {
+    block.functions.set(context, shape, job.compiled);
+}
+
+/// Interpolates everything that a draw reads in some lanes of a triangle.
+#[inline(always)]
+pub(crate) fn interpolate<const FMA: bool>(
     context: &TriangleContext<'_>,
     shape: &Shape,
     job: &Job<'_>,
@@ -66,22 +73,22 @@ pub(crate) fn interpolate(
     let compiled = job.compiled;
     let (primary, secondary) = (&context.primary, &context.secondary);
     let varies = compiled.varies(primary, secondary);
-    let Block { pixels, functions, undecided, places, workshop, colors, rows, .. } = block;
-    let Functions { estimates, is_estimated, .. } = functions;
+    let Block { pixels, functions, places, workshop, colors, rows, .. } = block;
+    let Functions { estimates, is_estimated, coordinates, sprite, numbers, fog } = functions;
     // All lanes, or those that no estimate decides. There is one call of each function, or compilers would not inline what it calls for each lane.
     let all = match is_estimated {
         true => {
             let colors = varies.then_some(&mut *colors);
-            let count = undecided.estimate((estimates, &compiled.samplers), (pixels, lanes.clone()), colors, places);
+            let count = estimates.estimate(&compiled.samplers, (pixels, lanes.clone()), colors, places);
             0..count.next_multiple_of(8)
         }
         false => lanes.clone(),
     };
     let (own, weights) = match is_estimated {
-        true => (&mut undecided.pixels, &mut undecided.colors),
+        true => (&mut estimates.pixels, &mut estimates.colors),
         false => (&mut *pixels, &mut *colors),
     };
-    if (varies || compiled.interpolates()) && !all.is_empty() {
+    if (varies || compiled.weighs()) && !all.is_empty() {
         match context.triangle.figure {
             Figure::Point => own.weigh_point(all.clone()),
             Figure::Triangle | Figure::Line => own.weigh(shape, all.clone(), compiled.takes_quads),
@@ -91,7 +98,7 @@ pub(crate) fn interpolate(
         }
     }
     if *is_estimated && varies {
-        undecided.scatter_colors(lanes.clone(), colors);
+        estimates.scatter(|all| &all.colors, lanes.clone(), colors);
     }
     for (slots, of) in [(&compiled.primary, primary), (&compiled.secondary, secondary)] {
         colors::color(slots, of, lanes.clone(), colors, rows);
@@ -99,27 +106,27 @@ pub(crate) fn interpolate(
     if all.is_empty() {
         return;
     }
-    let b = if *is_estimated { &undecided.pixels.b } else { &pixels.b };
+    let b = if *is_estimated { &estimates.pixels.b } else { &pixels.b };
     let weights = Weighted::new(b, all.clone(), !compiled.takes_quads);
-    for ((sampler, coordinates), place) in compiled.samplers.iter().zip(&functions.coordinates).zip(places) {
+    for ((sampler, coordinates), place) in compiled.samplers.iter().zip(&*coordinates).zip(places) {
         if sampler.interpolates() {
-            let own = if *is_estimated { &mut undecided.place } else { &mut *place };
-            if !functions.sprite.compute_places(sampler, pixels, all.clone(), own) {
+            let own = if *is_estimated { &mut estimates.place } else { &mut *place };
+            if !sprite.compute_places(sampler, pixels, all.clone(), own) {
                 coordinates.compute_places(sampler, weights, all.clone(), own);
             }
             coordinates.place_third(sampler, weights, all.clone(), own);
             if *is_estimated {
-                undecided.scatter_place(lanes.clone(), place);
+                estimates.scatter(|all| &all.place.at, lanes.clone(), &mut place.at);
             }
         }
     }
     if let Some(shader) = &compiled.shader {
-        let all = shader.varying.iter().zip(&functions.numbers).zip(&mut workshop.numbers);
+        let all = shader.varying.iter().zip(&*numbers).zip(&mut workshop.numbers);
         for (((_, _, purpose), number), out) in all {
             numbers::numbers(*purpose, number, weights, &mut out[lanes.clone()]);
         }
     }
-    if let (Some(slot), Some(fog)) = (compiled.fog, &functions.fog) {
-        fog.factors(weights, &mut rows[usize::from(slot)][lanes]);
+    if let (Some(slot), Some(fog)) = (compiled.fog, &*fog) {
+        factors(fog, weights, &mut rows[usize::from(slot)][lanes]);
     }
 }

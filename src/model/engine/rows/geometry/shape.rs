@@ -12,8 +12,6 @@ pub(crate) struct Shape {
     pub(crate) a: [f64; 3],
     pub(crate) b: [f64; 3],
     pub(crate) c: [f64; 3],
-    /// What is taken off the edge functions where they are compared with 0 (RAS-3): 1 for edges that belong to the other triangle.
-    pub(super) owed: [f64; 3],
     /// Ratios of the w of the vertices, if these differ.
     pub(crate) ratios: Option<[f64; 3]>,
     /// The reciprocal R of the edge numbers' sum, if it is the same at all pixels that are computed, and nothing is cut off edge functions.
@@ -32,7 +30,6 @@ impl Shape {
         let w = significant(w, profile);
         let is_flat = !perspective | ((w[0] == w[1]) & (w[1] == w[2]));
         let real = |n: [i64; 3]| [n[0] as f64, n[1] as f64, n[2] as f64];
-        let owed = |k: usize| if triangle.owns[k] { 0.0 } else { 1.0 };
         // The last bit that any of them has.
         let all = (0..3).fold(0, |all, k| all | triangle.a[k] | triangle.b[k] | triangle.c[k]);
         let largest = (0..3).fold(0, |largest: i64, k| largest.max(triangle.a[k].abs() + triangle.b[k].abs()));
@@ -42,7 +39,6 @@ impl Shape {
             a: real(triangle.a),
             b: real(triangle.b),
             c: real(triangle.c),
-            owed: [owed(0), owed(1), owed(2)],
             ratios: (!is_flat).then(|| ratios(w.map(f64::from))),
             reciprocal: is_whole.then(|| (triangle.doubled_area as f64).reciprocal()),
         }
@@ -59,27 +55,5 @@ impl Shape {
     pub(crate) fn edges(&self, x: f64, y: f64) -> [f64; 3] {
         let edge = |k: usize| self.a[k] * x + (self.b[k] * y + self.c[k]);
         [edge(0), edge(1), edge(2)]
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::random::Random;
-    use crate::raster::binary::Binary;
-
-    #[test]
-    fn ratios_are_those_of_the_definition() {
-        let mut random = Random::seeded(16);
-        let mut triangle = Triangle::default();
-        assert!(triangle.place_corners([0, 160, 0], [0, 0, 160]));
-        for round in 0..100_000 {
-            let mut w = || f32::from_bits((107 + (random.bits() % 40) as u32) << 23 | (random.bits() >> 41) as u32);
-            let w = [w(), w(), w()];
-            let shape = Shape::new(&triangle, w, (true, Profile::Nv2a), round % 2 == 0);
-            let wanted =
-                ratios(w.map(Binary::new)).map(|ratio| ratio.mantissa as f64 * 2_f64.powi(ratio.exponent as i32));
-            assert_eq!(shape.ratios, Some(wanted), "{w:?}");
-        }
     }
 }

@@ -9,9 +9,9 @@
 //! doubles yield every floor that counts.
 #![allow(clippy::float_arithmetic, reason = "quotients that are further from whole numbers than doubles round")]
 
-use super::shape::Shape;
 use crate::engine::rows::lanes::{larger, nearest, smaller};
 use crate::raster::setup::Triangle;
+use crate::raster::stroke::Figure;
 
 /// Number of rows whose spans are found at a time.
 pub(crate) const ROWS: usize = 16;
@@ -26,17 +26,22 @@ pub(crate) struct Spans {
 /// A limit beyond all quotients.
 const BEYOND: f64 = (1_u64 << 60) as f64;
 
-/// Finds the covered columns of the rows from `top` on, between two columns.
+/// Finds the columns that a figure covers in the rows from `top` on, between two columns within its box.
 #[inline(always)]
-pub(crate) fn of_triangle(shape: &Shape, top: i64, columns: (i64, i64)) -> Spans {
-    let Shape { a, b, c, owed, .. } = shape;
-    spans([0, 1, 2].map(|k| [a[k], b[k], c[k] - owed[k]]), top, columns)
-}
-
-/// Finds the columns that a line covers in the rows from `top` on, between two columns within its box.
-#[inline(always)]
-pub(crate) fn of_line(line: &Triangle, top: i64, columns: (i64, i64)) -> Spans {
-    spans(line.sides.map(|side| side.map(|n| n as f64)), top, columns)
+pub(crate) fn find_spans<const FMA: bool>(figure: &Triangle, top: i64, columns: (i64, i64)) -> Spans {
+    // Written out, because `map` on arrays is not always inlined.
+    let limit = |[a, b, c]: [i64; 3]| [a as f64, b as f64, c as f64];
+    match figure.figure {
+        Figure::Triangle => {
+            let edge = |k: usize| limit([figure.a[k], figure.b[k], figure.c[k] - i64::from(!figure.owns[k])]);
+            spans([edge(0), edge(1), edge(2)], top, columns)
+        }
+        Figure::Line => {
+            let [first, second, third, last] = figure.sides;
+            spans([limit(first), limit(second), limit(third), limit(last)], top, columns)
+        }
+        Figure::Point => Spans { first: [columns.0 as i32; ROWS], end: [columns.1 as i32; ROWS] },
+    }
 }
 
 /// Finds the columns of the rows from `top` on where a x + b y + c is not negative, for each of some [a, b, c].
@@ -75,7 +80,6 @@ fn spans<const N: usize>(limits: [[f64; 3]; N], top: i64, columns: (i64, i64)) -
 mod tests {
     use super::*;
     use crate::random::Random;
-    use crate::state::Profile;
 
     /// Triangles of all sizes up to the guard band, slivers, and some with horizontal edges.
     #[test]
@@ -94,11 +98,10 @@ mod tests {
             if !triangle.place_corners(x, y) {
                 continue;
             }
-            let shape = Shape::new(&triangle, [1.0; 3], (false, Profile::Nv2a), false);
             let height = triangle.rows.1 - triangle.rows.0;
             let top = triangle.rows.0 + if height > 0 { random.below(height as u128) as i64 } else { 0 };
             let columns = if round % 3 == 0 { (-50, 300) } else { triangle.columns };
-            let found = of_triangle(&shape, top, columns);
+            let found = find_spans::<false>(&triangle, top, columns);
             for j in 0..ROWS {
                 let (low, high) = triangle.span(top + j as i64, columns);
                 let (first, end) = (i64::from(found.first[j]), i64::from(found.end[j]));

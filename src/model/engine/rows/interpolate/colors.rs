@@ -48,10 +48,6 @@ pub(crate) fn color(
         let Some(slot) = slots[channel] else { continue };
         let out = &mut rows[usize::from(slot)].0[lanes.clone()];
         let corners = [u16::from(colors[0][channel]), u16::from(colors[1][channel]), u16::from(colors[2][channel])];
-        if corners[0] == corners[1] && corners[1] == corners[2] {
-            out.fill(corners[0] as i16);
-            continue;
-        }
         let (w0, w2) = (&w0[lanes.clone()], &w2[lanes.clone()]);
         for n in 0..out.len() {
             out[n] = interpolate::color(corners, w0[n], w2[n]) as i16;

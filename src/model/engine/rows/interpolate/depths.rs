@@ -13,14 +13,14 @@ use crate::engine::rows::lanes::{PerLane, floor_within, larger};
 use crate::raster::binary::Binary;
 use crate::raster::depth;
 use crate::raster::doubles::lost_by_sum;
-use crate::raster::weights::{Number, difference, dominance, ratios, shares};
+use crate::raster::weights::{Linear, Number, difference, ratios, shares};
 use crate::state::DepthFormat;
 use std::ops::Range;
 
 /// Marks a pixel outside the draw's depth range, which is dropped (DEP-4). No buffer has it.
 pub(crate) const OUTSIDE: u32 = u32::MAX - 1;
 
-/// Depths of the vertices of a triangle, or their w.
+/// Depths of the vertices of a triangle.
 #[derive(Clone, Copy)]
 struct Vertices {
     z: [f64; 3],
@@ -52,18 +52,6 @@ impl Vertices {
         let (one, other) = ((one * reciprocal).cut(), (other * reciprocal).cut());
         f64::aligned_sum::<29>([one * by_one, z, other * by_other])
     }
-
-    /// DEP-6: returns the w where these are the edge numbers, whose sum has the given reciprocal.
-    #[inline(always)]
-    fn w(&self, e: [f64; 3], reciprocal: f64) -> f64 {
-        let [d10, _, d21] = self.differences;
-        let b = shares(e, reciprocal);
-        let [first, third] = dominance(b);
-        let one = if first | third { b[1] } else { b[2] };
-        let rest = rest(one, if first { b[2] } else { b[0] });
-        let (b0, b2) = (if first { rest } else { b[0] }, if third { rest } else { b[2] });
-        f64::aligned_sum::<29>([b0 * -d10, self.z[1], b2 * d21])
-    }
 }
 
 /// DEP-6: returns 1 less two weights of which 60 fraction bits count, toward zero to 24 bits.
@@ -89,8 +77,8 @@ pub(crate) fn depths(
     out: &mut PerLane<u32>,
 ) {
     let plane = &context.depth;
-    let vertices = Vertices::new(plane.w.unwrap_or(plane.z));
-    let ratios = plane.w.map(|_| ratios(vertices.z));
+    let (vertices, w) = (Vertices::new(plane.z), Linear::new(plane.w.unwrap_or_default()));
+    let ratios = plane.w.map(|w| ratios([w[0].into(), w[1].into(), w[2].into()]));
     let mut found = [0.0; CHUNK];
     for first in lanes.clone().step_by(CHUNK) {
         let part = first..(first + CHUNK).min(lanes.end);
@@ -98,7 +86,7 @@ pub(crate) fn depths(
         let Passes { edges: [e0, e1, e2], reciprocals, .. } = pixels.part(shape, ratios, part.clone());
         if ratios.is_some() {
             for n in 0..found.len() {
-                found[n] = vertices.w([e0[n], e1[n], e2[n]], reciprocals[n]);
+                found[n] = depth::w_of_shares(shares([e0[n], e1[n], e2[n]], reciprocals[n]), w, rest);
             }
         } else {
             for n in 0..found.len() {

@@ -78,13 +78,22 @@ impl Estimate {
     }
 }
 
-/// The estimates of a triangle: of W0 and W2, and of each sampler's coordinates. The divisor is 1 a vertex if all w are equal.
+/// The estimates of a triangle, and the lanes that they do not decide, side by side, with what the exact text makes of these.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Estimates {
-    colors: [Estimate; 2],
+    /// Those of W0 and W2, and of each sampler's coordinates.
+    weights: [Estimate; 2],
     coordinates: Vec<[Estimate; 2]>,
-    /// The divisor at pixel (0, 0), and its changes from column to column and from row to row.
+    /// The divisor at pixel (0, 0), and its changes from column to column and from row to row. It is 1 a vertex if all w are equal.
     divisor: [f64; 3],
+    /// One over the divisor of each lane.
+    inverse: PerLane<f64>,
+    /// 1 for each lane that is not decided, otherwise 0, and the indices of these among those of the triangle.
+    is_undecided: PerLane<u8>,
+    lanes: Vec<u16>,
+    pub(crate) pixels: Pixels,
+    pub(crate) colors: ColorWeights,
+    pub(crate) place: Place,
 }
 
 impl Estimates {
@@ -99,57 +108,32 @@ impl Estimates {
         self.divisor = [sum(&shape.c), sum(&shape.a), sum(&shape.b)];
         let weights = [Linear { first: 1.0, ..Linear::default() }, Linear { third: 1.0, ..Linear::default() }];
         let [Some(w0), Some(w2)] = weights.map(|weight| Estimate::new(shape, &weight, 256.0)) else { return false };
-        self.colors = [w0, w2];
+        self.weights = [w0, w2];
         self.coordinates.clear();
-        for (sampler, coordinates) in samplers.iter().zip(coordinates) {
-            let mut estimates = [Estimate::default(); 2];
-            if sampler.interpolates() {
-                let Some(numbers) = coordinates.plane(sampler) else { return false };
-                for axis in 0..2 {
-                    let scale = 256.0 / unit(sampler) * f64::from(sampler.sides[axis]);
-                    let Some(estimate) = Estimate::new(shape, &numbers[axis], scale) else { return false };
-                    estimates[axis] = estimate;
-                }
-            }
-            self.coordinates.push(estimates);
+        for (sampler, coordinates) in samplers.iter().zip(coordinates).filter(|(sampler, _)| sampler.interpolates()) {
+            let Some([s, t]) = coordinates.plane(sampler) else { return false };
+            let of = |number, axis: usize| {
+                Estimate::new(shape, &number, 256.0 / unit(sampler) * f64::from(sampler.sides[axis]))
+            };
+            let (Some(u), Some(v)) = (of(s, 0), of(t, 1)) else { return false };
+            self.coordinates.push([u, v]);
         }
         true
     }
-}
 
-/// Returns what decides the texels of a sampler, in 1/256 texel: a step of the filter, or a texel.
-fn unit(sampler: &Sampler) -> f64 {
-    if sampler.filters { 1.0 } else { 256.0 }
-}
-
-/// Lanes that estimates do not decide, side by side, and what the exact text makes of them.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Undecided {
-    /// 1 for each of these lanes, otherwise 0.
-    is_undecided: PerLane<u8>,
-    /// One over the divisor of each lane.
-    inverse: PerLane<f64>,
-    /// Indices of these lanes among those of the triangle.
-    lanes: Vec<u16>,
-    pub(crate) pixels: Pixels,
-    pub(crate) colors: ColorWeights,
-    pub(crate) place: Place,
-}
-
-impl Undecided {
     /// Estimates what a triangle has in some lanes, and gathers those that are not decided. Returns how many these are.
     #[inline(always)]
     pub(crate) fn estimate(
         &mut self,
-        (estimates, samplers): (&Estimates, &[Sampler]),
+        samplers: &[Sampler],
         (pixels, lanes): (&Pixels, Range<usize>),
         colors: Option<&mut ColorWeights>,
         places: &mut [Place],
     ) -> usize {
-        let is_undecided = &mut self.is_undecided[..lanes.len()];
+        let (is_undecided, inverse) = (&mut self.is_undecided[..lanes.len()], &mut self.inverse[..lanes.len()]);
         is_undecided.fill(0);
         let (x, y) = (&pixels.x[lanes.clone()], &pixels.y[lanes.clone()]);
-        let (inverse, [divisor, dx, dy]) = (&mut self.inverse[..lanes.len()], estimates.divisor);
+        let [divisor, dx, dy] = self.divisor;
         if dx == 0.0 && dy == 0.0 {
             inverse.fill(1.0 / divisor);
         } else {
@@ -163,61 +147,49 @@ impl Undecided {
         let at = [x, y, &*inverse];
         if let Some([w0, w2]) = colors {
             let (w0, w2) = (&mut w0[lanes.clone()], &mut w2[lanes.clone()]);
-            estimates.colors[0].each(at, is_undecided, w0, colors::weight);
-            estimates.colors[1].each(at, is_undecided, w2, colors::weight);
+            self.weights[0].each(at, is_undecided, w0, colors::weight);
+            self.weights[1].each(at, is_undecided, w2, colors::weight);
             colors::limit(w0, w2);
         }
-        for ((sampler, estimates), place) in samplers.iter().zip(&estimates.coordinates).zip(places) {
-            if sampler.interpolates() {
-                let (unit, bias) = (unit(sampler), sampler.bias());
-                for axis in 0..2 {
-                    let out = &mut place.at[axis][lanes.clone()];
-                    estimates[axis].each(at, is_undecided, out, |floor| limited(unit * floor) - bias);
-                }
+        let own = samplers.iter().zip(places).filter(|(sampler, _)| sampler.interpolates());
+        for ((sampler, place), estimates) in own.zip(&self.coordinates) {
+            let (unit, bias) = (unit(sampler), sampler.bias());
+            for axis in 0..2 {
+                let out = &mut place.at[axis][lanes.clone()];
+                estimates[axis].each(at, is_undecided, out, |floor| limited(unit * floor) - bias);
             }
         }
-        gather(is_undecided, &mut self.lanes);
-        for (n, lane) in self.lanes.iter().enumerate() {
-            let lane = usize::from(*lane);
-            (self.pixels.x[n], self.pixels.y[n]) = (x[lane], y[lane]);
+        self.lanes.clear();
+        for (eight, of) in (0..).step_by(8).zip(is_undecided.as_chunks::<8>().0) {
+            let mut marks = u64::from_le_bytes(*of);
+            while marks != 0 {
+                let lane = eight + marks.trailing_zeros() as usize / 8;
+                (self.pixels.x[self.lanes.len()], self.pixels.y[self.lanes.len()]) = (x[lane], y[lane]);
+                self.lanes.push(lane as u16);
+                marks &= marks - 1;
+            }
         }
         self.lanes.len()
     }
 
-    /// Writes the weights of colours into their lanes.
+    /// Writes what was computed of undecided lanes into these, the weights of colours or coordinates.
     #[inline(always)]
-    pub(crate) fn scatter_colors(&self, lanes: Range<usize>, colors: &mut ColorWeights) {
-        for (from, out) in self.colors.iter().zip(colors) {
-            scatter(&self.lanes, from, &mut out[lanes.clone()]);
-        }
-    }
-
-    /// Writes coordinates into their lanes.
-    #[inline(always)]
-    pub(crate) fn scatter_place(&self, lanes: Range<usize>, place: &mut Place) {
-        for (from, out) in self.place.at.iter().zip(&mut place.at) {
-            scatter(&self.lanes, from, &mut out[lanes.clone()]);
+    pub(crate) fn scatter<T: Copy>(
+        &self,
+        of: fn(&Self) -> &[PerLane<T>; 2],
+        lanes: Range<usize>,
+        out: &mut [PerLane<T>; 2],
+    ) {
+        for (from, out) in of(self).iter().zip(out) {
+            let out = &mut out[lanes.clone()];
+            for (lane, value) in self.lanes.iter().zip(&**from) {
+                out[usize::from(*lane)] = *value;
+            }
         }
     }
 }
 
-/// Lists the lanes that are marked.
-#[inline(always)]
-fn gather(is_undecided: &[u8], lanes: &mut Vec<u16>) {
-    lanes.clear();
-    for (eight, of) in (0..).step_by(8).zip(is_undecided.as_chunks::<8>().0) {
-        let mut marks = u64::from_le_bytes(*of);
-        while marks != 0 {
-            lanes.push(eight + marks.trailing_zeros() as u16 / 8);
-            marks &= marks - 1;
-        }
-    }
-}
-
-/// Writes values of gathered lanes into their lanes.
-#[inline(always)]
-fn scatter<T: Copy>(lanes: &[u16], from: &[T], out: &mut [T]) {
-    for (lane, value) in lanes.iter().zip(from) {
-        out[usize::from(*lane)] = *value;
-    }
+/// Returns what decides the texels of a sampler, in 1/256 texel: a step of the filter, or a texel.
+fn unit(sampler: &Sampler) -> f64 {
+    if sampler.filters { 1.0 } else { 256.0 }
 }

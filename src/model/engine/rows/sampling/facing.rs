@@ -1,27 +1,9 @@
 //! TEX-12 on rows: the face that a direction meets, without branches.
 #![allow(clippy::float_arithmetic, reason = "signs of components, and small whole numbers")]
 
+use crate::engine::rows::lanes::larger;
 use crate::texture::cube::Face;
 use std::ops::Neg;
-
-/// A component of a direction.
-pub(crate) trait Component: Copy + PartialOrd + Neg<Output = Self> + Default {
-    fn magnitude(self) -> Self;
-}
-
-impl Component for f32 {
-    #[inline(always)]
-    fn magnitude(self) -> f32 {
-        self.abs()
-    }
-}
-
-impl Component for f64 {
-    #[inline(always)]
-    fn magnitude(self) -> f64 {
-        self.abs()
-    }
-}
 
 /// TEX-12: the face that a direction meets.
 #[derive(Clone, Copy)]
@@ -35,8 +17,8 @@ pub(crate) struct Facing {
 impl Facing {
     /// Chooses X before Y and Y before Z, as `Face::from_direction`. One choice at a time, because compilers turn nested ones into branches.
     #[inline(always)]
-    pub(crate) fn new<T: Component>([x, y, z]: [T; 3]) -> Facing {
-        let (a, b, c) = (x.magnitude(), y.magnitude(), z.magnitude());
+    pub(crate) fn new<T: Copy + PartialOrd + Neg<Output = T> + Default>([x, y, z]: [T; 3]) -> Facing {
+        let (a, b, c) = (larger(x, -x), larger(y, -y), larger(z, -z));
         let on_x = (a >= b) & (a >= c);
         let on_y = !on_x & (b >= c);
         let major = if on_y { y } else { z };
@@ -46,7 +28,7 @@ impl Facing {
 
     /// Returns s, t and the major component of a direction on the face. The last is not positive if the direction points away from it.
     #[inline(always)]
-    pub(crate) fn components<T: Component>(self, [x, y, z]: [T; 3]) -> [T; 3] {
+    pub(crate) fn components<T: Copy + Neg<Output = T>>(self, [x, y, z]: [T; 3]) -> [T; 3] {
         let turned = |v: T| if self.is_negative { -v } else { v };
         let other = turned(if self.on_x { -z } else { x });
         let s = if self.on_y { x } else { other };

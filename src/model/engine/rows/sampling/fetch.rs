@@ -2,48 +2,32 @@
 
 use super::filter::{Filter, Footprint, GROUP, fetch_footprints, filter_half, filter_one};
 use super::levels::{MipFetches, Placing};
-use super::pairs::Pair;
 use super::place::Place;
 use super::quads::Quads;
 use super::sampler::Sampler;
 use super::table::{Axis, Column, Table, Texels};
-use super::taps;
+use super::taps::{self, Pair};
 use crate::engine::rows::geometry::weights::Pixels;
-use crate::engine::rows::lanes::{BLOCK, LANES, Lanes, PerLane, for_each_function};
+use crate::engine::rows::lanes::{BLOCK, Lanes, PerLane, for_each_function};
 use crate::number::Lane;
 use crate::state::{CompareFunction, MipFilter};
 use crate::texture::filter::lerp;
 use crate::texture::lod;
 use crate::texture::planned::PlannedUnit;
 
-/// Scratch space of a fetch. Aligned, because vectors are stored and soon loaded again.
-#[derive(Clone, Debug)]
-#[repr(C, align(64))]
+/// Scratch space of a fetch.
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Workspace {
-    entries: [u32; BLOCK],
-    texels: [u32; BLOCK],
-    footprints: [Footprint; BLOCK],
+    entries: PerLane<u32>,
+    texels: PerLane<u32>,
+    footprints: PerLane<Footprint>,
     /// Channels of the second level.
-    next: [[i16; BLOCK]; 4],
+    next: [PerLane<i16>; 4],
     /// 16-bit halves: that of A and R, and that of G and B.
-    halves: [[i32; BLOCK]; 2],
+    halves: [PerLane<i32>; 2],
     pub(crate) placing: Box<Placing>,
-    /// The lanes that are fetched. At the end, because the arrays are aligned.
+    /// The lanes that are fetched.
     pub(crate) lanes: Lanes,
-}
-
-impl Default for Workspace {
-    fn default() -> Self {
-        Workspace {
-            placing: Box::default(),
-            lanes: Lanes::default(),
-            entries: [0; BLOCK],
-            texels: [0; BLOCK],
-            footprints: [[0; 4]; BLOCK],
-            next: [[0; BLOCK]; 4],
-            halves: [[0; BLOCK]; 2],
-        }
-    }
 }
 
 /// What reads a texture: the filter of the instruction set, the unit, its sampler and the rows of its channels.
@@ -55,41 +39,42 @@ pub(crate) struct Reader<'a> {
     pub(crate) wanted: [Option<u16>; 4],
 }
 
-/// [`Reader::sample`], compiled for an instruction set.
+/// [`sample`], compiled for an instruction set.
 pub(crate) type SampleUnit =
     fn(Reader<'_>, &Pixels, &mut Place, &mut Quads, &mut Workspace, &mut [bool], &mut [PerLane<i16>]);
 
-impl Reader<'_> {
-    /// Samples a unit for a block: its levels, its taps, or one texel or footprint of each pixel. Drops lanes by its colour key.
-    #[inline(always)]
-    pub(crate) fn sample(
-        self,
-        pixels: &Pixels,
-        place: &mut Place,
-        quads: &mut Quads,
-        work: &mut Workspace,
-        alive: &mut [bool],
-        rows: &mut [PerLane<i16>],
-    ) {
-        let Reader { filter, unit, sampler, wanted } = self;
-        let Some(table) = &sampler.table else { return };
-        if sampler.mixes {
-            self.choose_levels(table, pixels, place, quads, work);
-            let both = unit.state.mip_filter == MipFilter::Linear;
-            sample_levels(filter, table, &place.reads, both, sampler.signed, wanted, work, rows);
-        } else if sampler.pairs > 0 {
-            let Placing { footprints, .. } = &mut *work.placing;
-            quads.measure((unit, sampler), pixels, place, footprints);
-            taps::spread(quads, footprints, &mut place.pairs);
-            sample_taps(filter, table, &place.at, &place.pairs, sampler, wanted, work, rows);
-        } else {
-            let images = sampler.has_images().then_some(&place.images);
-            locate(table, &mut place.at, images, work);
-            sample(filter, table, &place.at, &place.references, sampler, wanted, work, rows);
+/// Samples a unit for a block: its levels, its taps, or one texel or footprint of each pixel. Drops lanes by its colour key.
+#[inline(always)]
+pub(crate) fn sample<const FMA: bool>(
+    reader: Reader<'_>,
+    pixels: &Pixels,
+    place: &mut Place,
+    quads: &mut Quads,
+    work: &mut Workspace,
+    alive: &mut [bool],
+    rows: &mut [PerLane<i16>],
+) {
+    let Reader { unit, sampler, wanted, .. } = reader;
+    let Some(table) = &sampler.table else { return };
+    if sampler.mixes {
+        reader.choose_levels(table, pixels, place, quads, work);
+        reader.sample_levels(table, &place.reads, work, rows);
+    } else if sampler.pairs > 0 {
+        let Placing { footprints, .. } = &mut *work.placing;
+        quads.measure((unit, sampler), pixels, place, footprints);
+        taps::spread(quads, footprints, &mut place.pairs);
+        reader.sample_taps(table, place, work, rows);
+    } else {
+        let images = sampler.has_images().then_some(&place.images);
+        locate(table, &mut place.at, images, work);
+        if reader.texels(table, &place.at, &place.references, work, rows) {
+            load(work.lanes, sampler.signed, wanted, rows);
         }
-        drop_keyed(sampler, work, alive);
     }
+    drop_keyed(sampler, &place.reads, work, alive);
+}
 
+impl Reader<'_> {
     /// TEX-9 to TEX-11: finds the level of detail of each lane, and what is read for it.
     #[inline(always)]
     fn choose_levels(self, table: &Table, pixels: &Pixels, place: &mut Place, quads: &mut Quads, work: &mut Workspace) {
@@ -102,108 +87,166 @@ impl Reader<'_> {
         let Place { reads, fine, images, .. } = place;
         reads.compute_fetches((unit, table), count, fine, sampler.has_images().then_some(images), placing);
     }
-}
 
-/// Computes the table entries at `u`, `v` on `faces`. Coordinates are in 1/256 texel, less half a texel if the unit filters. They are
-/// limited to the axes.
-#[inline(always)]
-pub(crate) fn locate(
-    table: &Table,
-    [u, v]: &mut [PerLane<i32>; 2],
-    faces: Option<&PerLane<u32>>,
-    work: &mut Workspace,
-) {
-    let (u, v) = (u.block_mut(), v.block_mut());
-    let Workspace { lanes, entries, .. } = work;
-    let [columns, rows] = &table.axes;
-    columns.reduce(&mut u[..lanes.count()]);
-    rows.reduce(&mut v[..lanes.count()]);
-    match faces.map(PerLane::block) {
-        Some(faces) => address::<true>((table, *lanes), u, v, |n| faces[n] * table.face, entries),
-        None if table.axes.iter().all(Axis::repeats) => address::<false>((table, *lanes), u, v, |_| 0, entries),
-        None => address::<true>((table, *lanes), u, v, |_| 0, entries),
-    }
-}
-
-/// Samples a unit at the [located](locate) entries and writes its channels to the `wanted` rows. `references` are the depths to compare
-/// with.
-#[inline(always)]
-#[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
-fn sample(
-    filter: Filter,
-    table: &Table,
-    at: &[PerLane<i32>; 2],
-    references: &PerLane<u32>,
-    sampler: &Sampler,
-    wanted: [Option<u16>; 4],
-    work: &mut Workspace,
-    rows: &mut [PerLane<i16>],
-) {
-    if texels(filter, table, at, references, sampler, wanted, work, rows) {
-        load(work.lanes, sampler.signed, wanted, rows);
-    }
-}
-
-/// Samples without subtracting the 128 of signed channels. Returns whether it still has to be subtracted.
-#[inline(always)]
-#[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
-fn texels(
-    filter: Filter,
-    table: &Table,
-    [u, v]: &[PerLane<i32>; 2],
-    references: &PerLane<u32>,
-    sampler: &Sampler,
-    wanted: [Option<u16>; 4],
-    work: &mut Workspace,
-    rows: &mut [PerLane<i16>],
-) -> bool {
-    let (u, v) = (u.block(), v.block());
-    if let Texels::Wide(texels) = &table.texels {
-        work.filter_halves(texels, sampler.filters, (u, v));
-        bytes_of_halves((work.lanes, &work.halves), sampler.signed, wanted, rows);
-        return false;
-    }
-    let Workspace { lanes, entries, texels: found, footprints, .. } = work;
-    let lanes = *lanes;
-    // Channels that are not wanted go to the spare rows.
-    let slot = |n: usize| wanted[n].map_or(n, usize::from);
-    let Ok([red, green, blue, alpha]) = rows.get_disjoint_mut([slot(0), slot(1), slot(2), slot(3)]) else {
-        return false;
-    };
-    let (red, green, blue, alpha) = (red.block_mut(), green.block_mut(), blue.block_mut(), alpha.block_mut());
-    match &table.texels {
-        Texels::Single(texels) => {
-            fetch(lanes, texels, entries, found);
-            unpack(lanes, found, red, green, blue, alpha);
-        }
-        // Done above, and by `sample_levels`.
-        Texels::Wide(..) | Texels::Levels(_) | Texels::WideLevels(_) => {}
-        Texels::Depths(texels, function) => {
-            fetch(lanes, texels, entries, found);
-            let mut passed = [true; BLOCK];
-            compare(*function, references, found, &mut passed[..lanes.count()]);
-            for (out, _) in [red, green, blue, alpha].into_iter().zip(wanted).filter(|(_, wanted)| wanted.is_some()) {
-                for n in 0..lanes.count() {
-                    out[n] = if passed[n] { 255 } else { 0 };
-                }
-            }
+    /// Samples a unit at the [located](locate) entries and writes its channels to the `wanted` rows, without subtracting the 128 of signed ones.
+    /// `references` are the depths to compare with. Returns whether 128 still has to be subtracted.
+    #[inline(always)]
+    fn texels(
+        self,
+        table: &Table,
+        [u, v]: &[PerLane<i32>; 2],
+        references: &PerLane<u32>,
+        work: &mut Workspace,
+        rows: &mut [PerLane<i16>],
+    ) -> bool {
+        let at = [u.block(), v.block()];
+        let Workspace { lanes, entries, texels: found, footprints, halves, .. } = work;
+        let (lanes, entries) = (*lanes, entries.block());
+        if let Texels::Halves(texels) = &table.texels {
+            filter_halves(lanes, texels, self.sampler.filters, (entries, at), footprints, halves);
+            self.split_halves(lanes, halves, rows);
             return false;
         }
-        Texels::One(channel, texels) => {
-            fetch(lanes, texels, entries, found);
-            let out = match channel {
-                0 => red,
-                1 => green,
-                2 => blue,
-                _ => alpha,
-            };
-            filter_one(lanes, found, u, v, out);
+        let (found, footprints) = (found.block_mut(), footprints.block_mut());
+        let Some(of) = channels(self.wanted, rows) else { return false };
+        match &table.texels {
+            Texels::Halves(_) => {}
+            Texels::Single(texels) => {
+                fetch(lanes, texels, entries, found);
+                let [red, green, blue, alpha] = of;
+                unpack(lanes, found, red, green, blue, alpha);
+            }
+            Texels::Depths(texels, function) => {
+                fetch(lanes, texels, entries, found);
+                let mut passed = [true; BLOCK];
+                compare(*function, references, found, &mut passed[..lanes.count()]);
+                for (out, _) in of.into_iter().zip(self.wanted).filter(|(_, row)| row.is_some()) {
+                    for n in 0..lanes.count() {
+                        out[n] = if passed[n] { 255 } else { 0 };
+                    }
+                }
+                return false;
+            }
+            Texels::One(channel, texels) => {
+                fetch(lanes, texels, entries, found);
+                filter_one(lanes, found, at, of[*channel]);
+            }
+            Texels::Footprints(texels) => {
+                (self.filter)(lanes, texels, entries, at, footprints, of);
+            }
         }
-        Texels::Footprints(texels) => {
-            filter(lanes, texels, entries, [u, v], footprints, [red, green, blue, alpha]);
+        true
+    }
+
+    /// TEX-17: samples all taps of the pixels, and adds them with their weights.
+    #[inline(always)]
+    fn sample_taps(self, table: &Table, place: &Place, work: &mut Workspace, rows: &mut [PerLane<i16>]) {
+        let Reader { sampler, wanted, .. } = self;
+        // Not closures: compilers do not inline them, and they lack the caller's instruction set.
+        let taps = place.pairs.iter().flat_map(|pair| [(pair, 1), (pair, -1)]);
+        if let Texels::Halves(texels) = &table.texels {
+            let mut sums = [PerLane::from_value(0_i32), PerLane::from_value(0)];
+            for (pair, side) in taps {
+                let [u, v] = tap(table, &place.at, (pair, side), work);
+                let Workspace { lanes, entries, footprints, halves, .. } = &mut *work;
+                let at = (entries.block(), [u.block(), v.block()]);
+                filter_halves(*lanes, texels, sampler.filters, at, footprints, halves);
+                let weights = pair.weights.block();
+                for (sums, half) in sums.iter_mut().zip(halves) {
+                    for n in 0..lanes.count() {
+                        sums[n] += half[n] * i32::from(weights[n]);
+                    }
+                }
+            }
+            sums.iter_mut().flat_map(|sums| sums.iter_mut()).for_each(|sum| *sum = (*sum + 128) >> 8);
+            return self.split_halves(work.lanes, &sums, rows);
+        }
+        let mut sums = [[0_u16; BLOCK]; 4];
+        for (pair, side) in taps {
+            let at = tap(table, &place.at, (pair, side), work);
+            self.texels(table, &at, &place.references, work, rows);
+            let weights = pair.weights.block();
+            for (sums, wanted) in sums.iter_mut().zip(wanted) {
+                let Some(wanted) = wanted else { continue };
+                let channel = rows[usize::from(wanted)].block();
+                for n in 0..work.lanes.count() {
+                    sums[n] += channel[n] as u16 * weights[n];
+                }
+            }
+        }
+        for (sums, wanted) in sums.iter().zip(wanted) {
+            let Some(wanted) = wanted else { continue };
+            let out = rows[usize::from(wanted)].block_mut();
+            for n in 0..work.lanes.count() {
+                out[n] = ((sums[n] + 128) >> 8) as i16;
+            }
+        }
+        load(work.lanes, sampler.signed, wanted, rows);
+    }
+
+    /// TEX-9: samples one level, or mixes two.
+    #[inline(always)]
+    fn sample_levels(self, table: &Table, reads: &MipFetches, work: &mut Workspace, rows: &mut [PerLane<i16>]) {
+        let (both, weights) = (self.unit.state.mip_filter == MipFilter::Linear, reads.weights.block());
+        let Workspace { lanes, footprints, next, halves, .. } = work;
+        let lanes = *lanes;
+        if let Texels::Halves(texels) = &table.texels {
+            filter_halves(lanes, texels, true, reads.of_level(0), footprints, halves);
+            if both {
+                let nearer = halves.clone();
+                filter_halves(lanes, texels, true, reads.of_level(1), footprints, halves);
+                for (half, nearer) in halves.iter_mut().zip(&nearer) {
+                    for n in 0..lanes.count() {
+                        half[n] = lerp(nearer[n], half[n], i32::from(weights[n]));
+                    }
+                }
+            }
+            return self.split_halves(lanes, halves, rows);
+        }
+        let Texels::Footprints(texels) = &table.texels else { return };
+        let footprints = footprints.block_mut();
+        let Some([red, green, blue, alpha]) = channels(self.wanted, rows) else { return };
+        let (entries, at) = reads.of_level(0);
+        (self.filter)(lanes, texels, entries, at, footprints, [red, green, blue, alpha]);
+        if both {
+            let (entries, at) = reads.of_level(1);
+            (self.filter)(lanes, texels, entries, at, footprints, next.each_mut().map(PerLane::block_mut));
+            for ((channel, next), wanted) in [red, green, blue, alpha].into_iter().zip(next).zip(self.wanted) {
+                if wanted.is_some() {
+                    mix(lanes, channel, next.block(), weights);
+                }
+            }
+        }
+        load(lanes, self.sampler.signed, self.wanted, rows);
+    }
+
+    /// TEX-1, TEX-18: splits 16-bit halves into bytes: A and R, G and B.
+    #[inline(always)]
+    fn split_halves(self, lanes: Lanes, halves: &[PerLane<i32>; 2], rows: &mut [PerLane<i16>]) {
+        for (half, [high, low]) in halves.iter().map(PerLane::block).zip([[3, 0], [1, 2]]) {
+            if let Some(slot) = self.wanted[low] {
+                let out = rows[usize::from(slot)].block_mut();
+                for n in 0..lanes.count() {
+                    out[n] = (half[n] & 255) as i16;
+                }
+            }
+            if let Some(slot) = self.wanted[high] {
+                let out = rows[usize::from(slot)].block_mut();
+                for n in 0..lanes.count() {
+                    let byte = (half[n] >> 8) as i16;
+                    out[n] = if self.sampler.signed[high] { 2 * (byte - 128) } else { byte };
+                }
+            }
         }
     }
-    true
+}
+
+/// Returns the rows of channels. Those that nobody reads go to the spare rows.
+#[inline(always)]
+fn channels(wanted: [Option<u16>; 4], rows: &mut [PerLane<i16>]) -> Option<[&mut [i16; BLOCK]; 4]> {
+    let slot = |n: usize| wanted[n].map_or(n, usize::from);
+    let [red, green, blue, alpha] = rows.get_disjoint_mut([slot(0), slot(1), slot(2), slot(3)]).ok()?;
+    Some([red.block_mut(), green.block_mut(), blue.block_mut(), alpha.block_mut()])
 }
 
 /// SHD-1: compares references with depths.
@@ -214,58 +257,20 @@ fn compare(function: CompareFunction, references: &[u32], depths: &[u32], passed
     });
 }
 
-/// TEX-17: samples all taps of the pixels, and adds them with their weights.
+/// Computes the table entries at `u`, `v` on `faces`. Coordinates are in 1/256 texel, less half a texel if the unit filters. They are
+/// limited to the axes.
 #[inline(always)]
-#[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
-fn sample_taps(
-    filter: Filter,
-    table: &Table,
-    at: &[PerLane<i32>; 2],
-    pairs: &[Pair],
-    sampler: &Sampler,
-    wanted: [Option<u16>; 4],
-    work: &mut Workspace,
-    rows: &mut [PerLane<i16>],
-) {
-    // Not closures: compilers do not inline them, and they lack the caller's instruction set.
-    let taps = pairs.iter().flat_map(|pair| [(pair, 1), (pair, -1)]);
-    if let Texels::Wide(texels) = &table.texels {
-        let mut sums = [[0_i32; BLOCK]; 2];
-        for (pair, side) in taps {
-            let [u, v] = tap(table, at, (pair, side), work);
-            work.filter_halves(texels, sampler.filters, (u.block(), v.block()));
-            let weights = pair.weights.block();
-            for (sums, half) in sums.iter_mut().zip(&work.halves) {
-                for n in 0..work.lanes.count() {
-                    sums[n] += half[n] * i32::from(weights[n]);
-                }
-            }
-        }
-        let halves = sums.map(|sums| sums.map(|sum| (sum + 128) >> 8));
-        bytes_of_halves((work.lanes, &halves), sampler.signed, wanted, rows);
-        return;
+fn locate(table: &Table, [u, v]: &mut [PerLane<i32>; 2], faces: Option<&PerLane<u32>>, work: &mut Workspace) {
+    let (u, v) = (u.block_mut(), v.block_mut());
+    let (lanes, entries) = (work.lanes, work.entries.block_mut());
+    let [columns, rows] = &table.axes;
+    columns.reduce(&mut u[..lanes.count()]);
+    rows.reduce(&mut v[..lanes.count()]);
+    match faces.map(PerLane::block) {
+        Some(faces) => address::<true>((table, lanes), u, v, |n| faces[n] * table.face, entries),
+        None if table.axes.iter().all(Axis::repeats) => address::<false>((table, lanes), u, v, |_| 0, entries),
+        None => address::<true>((table, lanes), u, v, |_| 0, entries),
     }
-    let mut sums = [[0_u16; BLOCK]; 4];
-    for (pair, side) in taps {
-        let at = tap(table, at, (pair, side), work);
-        texels(filter, table, &at, &NO_REFERENCES, sampler, wanted, work, rows);
-        let weights = pair.weights.block();
-        for (sums, wanted) in sums.iter_mut().zip(wanted) {
-            let Some(wanted) = wanted else { continue };
-            let channel = rows[usize::from(wanted)].block();
-            for n in 0..work.lanes.count() {
-                sums[n] += channel[n] as u16 * weights[n];
-            }
-        }
-    }
-    for (sums, wanted) in sums.iter().zip(wanted) {
-        let Some(wanted) = wanted else { continue };
-        let out = rows[usize::from(wanted)].block_mut();
-        for n in 0..work.lanes.count() {
-            out[n] = ((sums[n] + 128) >> 8) as i16;
-        }
-    }
-    load(work.lanes, sampler.signed, wanted, rows);
 }
 
 /// Locates a tap of all pixels, on one side of their centres. Returns its coordinates.
@@ -282,78 +287,21 @@ fn tap(table: &Table, at: &[PerLane<i32>; 2], (pair, side): (&Pair, i32), work: 
     at
 }
 
-/// References for units that do not compare.
-static NO_REFERENCES: PerLane<u32> = PerLane([0; LANES]);
-
 /// KEY-1: drops lanes whose single texel, on the only level that is read, equals the sampler's key in the compared bits.
 #[inline(always)]
-pub(crate) fn drop_keyed(sampler: &Sampler, work: &Workspace, alive: &mut [bool]) {
+fn drop_keyed(sampler: &Sampler, reads: &MipFetches, work: &Workspace, alive: &mut [bool]) {
     let (Some((key, mask)), Some(table)) = (sampler.key, &sampler.table) else { return };
     let differs = |texel: u32| texel & mask != key;
     // Separate loops, because compilers do not take the choice out of one.
-    if let Texels::Levels(columns) | Texels::WideLevels(columns) = &table.texels {
-        for (alive, entry) in alive.iter_mut().zip(&work.entries[..work.lanes.count()]) {
+    if let (true, Texels::Footprints(columns) | Texels::Halves(columns)) = (sampler.mixes, &table.texels) {
+        for (alive, entry) in alive.iter_mut().zip(&reads.entries[0][..work.lanes.count()]) {
             *alive &= differs(columns[*entry as usize][0]);
         }
     } else {
-        for (alive, texel) in alive.iter_mut().zip(&work.texels) {
+        for (alive, texel) in alive.iter_mut().zip(work.texels.block()) {
             *alive &= differs(*texel);
         }
     }
-}
-
-/// TEX-9: samples one level, or mixes two if `both` is set.
-#[inline(always)]
-#[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
-fn sample_levels(
-    filter: Filter,
-    table: &Table,
-    reads: &MipFetches,
-    both: bool,
-    signed: [bool; 4],
-    wanted: [Option<u16>; 4],
-    work: &mut Workspace,
-    rows: &mut [PerLane<i16>],
-) {
-    let (texels, is_wide) = match &table.texels {
-        Texels::Levels(texels) => (texels, false),
-        Texels::WideLevels(texels) => (texels, true),
-        _ => return,
-    };
-    let weights = reads.weights.block();
-    if is_wide {
-        let at = reads.of_level(0, work.lanes, &mut work.entries);
-        work.filter_halves(texels, true, at);
-        if both {
-            let nearer = work.halves;
-            let at = reads.of_level(1, work.lanes, &mut work.entries);
-            work.filter_halves(texels, true, at);
-            for (half, nearer) in work.halves.iter_mut().zip(&nearer) {
-                for n in 0..work.lanes.count() {
-                    half[n] = lerp(nearer[n], half[n], i32::from(weights[n]));
-                }
-            }
-        }
-        bytes_of_halves((work.lanes, &work.halves), signed, wanted, rows);
-        return;
-    }
-    let Workspace { lanes, entries, footprints, next, .. } = work;
-    let lanes = *lanes;
-    let slot = |n: usize| wanted[n].map_or(n, usize::from);
-    let Ok([red, green, blue, alpha]) = rows.get_disjoint_mut([slot(0), slot(1), slot(2), slot(3)]) else { return };
-    let (red, green, blue, alpha) = (red.block_mut(), green.block_mut(), blue.block_mut(), alpha.block_mut());
-    let (u, v) = reads.of_level(0, lanes, entries);
-    filter(lanes, texels, entries, [u, v], footprints, [red, green, blue, alpha]);
-    if both {
-        let (u, v) = reads.of_level(1, lanes, entries);
-        filter(lanes, texels, entries, [u, v], footprints, next.each_mut());
-        for ((channel, next), wanted) in [red, green, blue, alpha].into_iter().zip(next).zip(wanted) {
-            if wanted.is_some() {
-                mix(lanes, channel, next, weights);
-            }
-        }
-    }
-    load(lanes, signed, wanted, rows);
 }
 
 /// TEX-9: mixes two levels of a channel.
@@ -408,42 +356,20 @@ fn fetch(lanes: Lanes, texels: &[u32], entries: &[u32; BLOCK], found: &mut [u32;
     }
 }
 
-impl Workspace {
-    /// Filters both 16-bit halves of the footprints at the entries, the one of A and R first.
-    #[inline(always)]
-    fn filter_halves(&mut self, texels: &[Column], linear: bool, at: (&[i32; BLOCK], &[i32; BLOCK])) {
-        let Workspace { lanes, entries, footprints, halves: [first, second], .. } = self;
-        let lanes = *lanes;
-        fetch_footprints(lanes, texels, entries, footprints);
-        let kept = if linear { -1 } else { 0 };
-        filter_half::<16>(lanes, footprints, at, kept, first);
-        filter_half::<0>(lanes, footprints, at, kept, second);
-    }
-}
-
-/// TEX-1, TEX-18: splits halves into bytes: A and R, G and B.
+/// Filters both 16-bit halves of the footprints at entries, the one of A and R first.
 #[inline(always)]
-fn bytes_of_halves(
-    (lanes, halves): (Lanes, &[[i32; BLOCK]; 2]),
-    signed: [bool; 4],
-    wanted: [Option<u16>; 4],
-    rows: &mut [PerLane<i16>],
+fn filter_halves(
+    lanes: Lanes,
+    texels: &[Column],
+    linear: bool,
+    (entries, at): (&[u32; BLOCK], [&[i32; BLOCK]; 2]),
+    footprints: &mut PerLane<Footprint>,
+    [first, second]: &mut [PerLane<i32>; 2],
 ) {
-    for (half, [high, low]) in halves.iter().zip([[3, 0], [1, 2]]) {
-        if let Some(slot) = wanted[low] {
-            let out = rows[usize::from(slot)].block_mut();
-            for n in 0..lanes.count() {
-                out[n] = (half[n] & 255) as i16;
-            }
-        }
-        if let Some(slot) = wanted[high] {
-            let out = rows[usize::from(slot)].block_mut();
-            for n in 0..lanes.count() {
-                let byte = (half[n] >> 8) as i16;
-                out[n] = if signed[high] { 2 * (byte - 128) } else { byte };
-            }
-        }
-    }
+    fetch_footprints(lanes, texels, entries, footprints.block_mut());
+    let kept = if linear { -1 } else { 0 };
+    filter_half::<16>(lanes, footprints.block(), at, kept, first.block_mut());
+    filter_half::<0>(lanes, footprints.block(), at, kept, second.block_mut());
 }
 
 /// Writes the channels of texels.

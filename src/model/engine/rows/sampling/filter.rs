@@ -80,13 +80,7 @@ fn two_at_a_time(
 
 /// TEX-6 of a single channel: both rows together along u, then along v.
 #[inline(always)]
-pub(crate) fn filter_one(
-    lanes: Lanes,
-    texels: &[u32; BLOCK],
-    u: &[i32; BLOCK],
-    v: &[i32; BLOCK],
-    out: &mut [i16; BLOCK],
-) {
+pub(crate) fn filter_one(lanes: Lanes, texels: &[u32; BLOCK], [u, v]: [&[i32; BLOCK]; 2], out: &mut [i16; BLOCK]) {
     for n in 0..lanes.count() {
         let rows = lerp(first(texels[n]), first(texels[n] >> 8), weight(u[n]));
         out[n] = lerp(Swar2(rows.0 & 255), Swar2(rows.0 >> 16), weight(v[n])).0 as i16;
@@ -98,7 +92,7 @@ pub(crate) fn filter_one(
 pub(crate) fn filter_half<const SHIFT: u32>(
     lanes: Lanes,
     footprints: &[Footprint; BLOCK],
-    (u, v): (&[i32; BLOCK], &[i32; BLOCK]),
+    [u, v]: [&[i32; BLOCK]; 2],
     kept: i32,
     out: &mut [i32; BLOCK],
 ) {

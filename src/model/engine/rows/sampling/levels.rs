@@ -1,9 +1,9 @@
 //! TEX-9 on rows: the levels of each pixel, and the table entries on them.
 #![allow(clippy::float_arithmetic, reason = "whole numbers that doubles hold, times powers of two")]
 
-use super::pairs::PairsOfQuad;
 use super::table::{Placed, Table};
-use crate::engine::rows::lanes::{BLOCK, Lanes, PerLane, limited};
+use super::taps::PairsOfQuad;
+use crate::engine::rows::lanes::{BLOCK, PerLane, limited};
 use crate::state::{Filter, MipFilter};
 use crate::texture::lod;
 use crate::texture::planned::PlannedUnit;
@@ -12,7 +12,7 @@ use crate::texture::planned::PlannedUnit;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct MipFetches {
     /// Table entries on the nearer level, and on the next one.
-    pub(crate) entries: [PerLane<i32>; 2],
+    pub(crate) entries: [PerLane<u32>; 2],
     /// u and v on those levels, of which only the fraction of a texel is used.
     pub(crate) coordinates: [[PerLane<i32>; 2]; 2],
     /// Weight of the next level, 0..=255.
@@ -31,20 +31,11 @@ pub(crate) struct Placing {
 }
 
 impl MipFetches {
-    /// Writes the entries of one of two levels. Returns the coordinates for its weights.
+    /// Returns the entries of one of two levels, and the coordinates for its weights.
     #[inline(always)]
-    pub(crate) fn of_level(
-        &self,
-        which: usize,
-        lanes: Lanes,
-        entries: &mut [u32; BLOCK],
-    ) -> (&[i32; BLOCK], &[i32; BLOCK]) {
-        let found = self.entries[which].block();
-        for n in 0..lanes.count() {
-            entries[n] = found[n] as u32;
-        }
+    pub(crate) fn of_level(&self, which: usize) -> (&[u32; BLOCK], [&[i32; BLOCK]; 2]) {
         let [u, v] = &self.coordinates[which];
-        (u.block(), v.block())
+        (self.entries[which].block(), [u.block(), v.block()])
     }
 
     /// Computes the fetches of the first lanes from their levels of detail, which become biased, and from their coordinates on level 0 in 1/65536
@@ -70,13 +61,13 @@ impl MipFetches {
             on_levels(&fine[0][..count], levels, most[0], u);
             on_levels(&fine[1][..count], levels, most[1], v);
             if low == high {
-                places(&table.placed(low as usize, 0), filters, lods, u, v, entries);
+                places(&table.levels[low as usize], filters, lods, u, v, entries);
             } else {
                 scattered((unit, table), filters, (lods, levels), u, v, entries);
             }
             if let Some(images) = images {
                 for (entry, image) in entries.iter_mut().zip(&**images) {
-                    *entry += (image * table.face) as i32;
+                    *entry += image * table.face;
                 }
             }
         }
@@ -152,11 +143,11 @@ fn scattered(
     (lods, levels): (&[i32], &[i32]),
     u: &mut [i32],
     v: &mut [i32],
-    entries: &mut [i32],
+    entries: &mut [u32],
 ) {
     let mut firsts = [0; MAX_LEVELS];
     for (n, first) in firsts.iter_mut().take(unit.levels.len()).enumerate() {
-        *first = table.placed(n, 0).first;
+        *first = table.levels[n].first;
     }
     let most = unit.largest_shifts().map(|shift| shift as i32);
     let (width, height) = (unit.levels[0].width as i32, unit.levels[0].height as i32);
@@ -165,11 +156,11 @@ fn scattered(
     let (u, v, levels, entries) = (&mut u[..lanes], &mut v[..lanes], &levels[..lanes], &mut entries[..lanes]);
     // A loop of its own, because compilers do not make vectors of look-ups.
     for n in 0..lanes {
-        entries[n] = firsts[levels[n] as usize % MAX_LEVELS];
+        entries[n] = firsts[levels[n] as usize % MAX_LEVELS] as u32;
     }
     for n in 0..lanes {
         let axes = [columns.shifted(width, levels[n].min(most[0])), rows.shifted(height, levels[n].min(most[1]))];
-        let placed = Placed { axes, first: entries[n], pitch };
+        let placed = Placed { axes, first: entries[n] as i32, pitch };
         (u[n], v[n], entries[n]) = entry(&placed, filters, lods[n], [u[n], v[n]]);
     }
 }
@@ -177,18 +168,19 @@ fn scattered(
 /// Returns the coordinates for the weights of a lane on a level, and the entry: that of the texel, or of the upper left texel of the
 /// footprint. Coordinates are not reduced to the period yet.
 #[inline(always)]
-fn entry(placed: &Placed, [mag, min]: [Taken; 2], lod: i32, [u, v]: [i32; 2]) -> (i32, i32, i32) {
+fn entry(placed: &Placed, [mag, min]: [Taken; 2], lod: i32, [u, v]: [i32; 2]) -> (i32, i32, u32) {
     let [columns, rows] = &placed.axes;
     let Taken { less, kept } = if lod <= 0 { mag } else { min };
     let (u, v) = ((u - less) & kept, (v - less) & kept);
     let (u, v) = (u.max(columns.low).min(columns.high), v.max(rows.low).min(rows.high));
-    (u, v, rows.entry(v).wrapping_mul(placed.pitch).wrapping_add(columns.entry(u)).wrapping_add(placed.first))
+    let entry = rows.entry(v).wrapping_mul(placed.pitch).wrapping_add(columns.entry(u)).wrapping_add(placed.first);
+    (u, v, entry as u32)
 }
 
 /// Computes the entry of each lane on a level, for the magnification or the minification filter: that of the texel, or of the upper left
 /// texel of the footprint. Coordinates become those for the weights.
 #[inline(always)]
-fn places(placed: &Placed, filters: [Taken; 2], lods: &[i32], u: &mut [i32], v: &mut [i32], entries: &mut [i32]) {
+fn places(placed: &Placed, filters: [Taken; 2], lods: &[i32], u: &mut [i32], v: &mut [i32], entries: &mut [u32]) {
     let Placed { axes: [columns, rows], first, pitch } = *placed;
     let lanes = lods.len();
     let (u, v, entries) = (&mut u[..lanes], &mut v[..lanes], &mut entries[..lanes]);
@@ -199,7 +191,7 @@ fn places(placed: &Placed, filters: [Taken; 2], lods: &[i32], u: &mut [i32], v: 
         columns.reduce(u);
         rows.reduce(v);
         for n in 0..lanes {
-            entries[n] = rows.entry(v[n]) * pitch + columns.entry(u[n]) + first;
+            entries[n] = (rows.entry(v[n]) * pitch + columns.entry(u[n]) + first) as u32;
         }
     }
 }

@@ -16,7 +16,7 @@ const LOG_MARGIN: f64 = 1.0 / (1_u64 << 40) as f64;
 
 impl Measure for i32 {
     #[inline(always)]
-    fn measure(_: &PlannedUnit, at: &AtQuads, _: usize, out: &mut [i32], open: &mut [u64]) {
+    fn measure(_: &PlannedUnit, at: &AtQuads, out: &mut [i32], open: &mut [u64]) {
         log_ratios(at, out, open);
     }
 

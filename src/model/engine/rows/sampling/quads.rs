@@ -27,8 +27,8 @@ pub(crate) type AtQuads = [[PerLane<f64>; 2]; 3];
 
 /// A result that a unit derives from the coordinates at a quad.
 pub(crate) trait Measure: Copy {
-    /// Computes the results of the first `count` quads. Sign bits of `open` are set for those that take whole numbers.
-    fn measure(unit: &PlannedUnit, at: &AtQuads, count: usize, out: &mut [Self], open: &mut [u64]);
+    /// Computes the results of quads. Sign bits of `open` are set for those that take whole numbers.
+    fn measure(unit: &PlannedUnit, at: &AtQuads, out: &mut [Self], open: &mut [u64]);
 
     /// Computes the result of one quad in whole numbers. `None` stands for a quad of which a pixel lies behind the viewer.
     fn of_quad(unit: &PlannedUnit, quad: Option<Quad>) -> Self;
@@ -40,30 +40,6 @@ pub(crate) struct PixelQuads {
     pub(crate) upper: usize,
     pub(crate) lower: usize,
     pub(crate) count: usize,
-}
-
-/// How the coordinates at quads follow from those of lanes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Projection {
-    /// They are the lanes' own.
-    None,
-    /// They are the lanes' own, which were divided by the third component of the direction.
-    Divided,
-    /// The directions of all three pixels meet the face of the first.
-    Cube,
-    /// The same for a vector of the dot unit.
-    CubeOfVector,
-}
-
-impl Projection {
-    pub(crate) fn from_sampler(sampler: &Sampler) -> Projection {
-        match (sampler.depends, sampler.cube) {
-            (false, false) => Projection::Divided,
-            (false, true) => Projection::Cube,
-            (true, false) => Projection::None,
-            (true, true) => Projection::CubeOfVector,
-        }
-    }
 }
 
 /// The quads of a block, and scratch space for what is derived from them.
@@ -109,7 +85,6 @@ impl Quads {
         place: &Place,
         out: &mut Vec<T>,
     ) {
-        let (projection, sides) = (Projection::from_sampler(sampler), sampler.sides);
         let count = self.all.iter().map(|quads| quads.count).sum();
         let rounded = whole_steps(count);
         self.far[..rounded].fill(0);
@@ -118,18 +93,18 @@ impl Quads {
             out.resize(rounded, T::of_quad(unit, None));
         }
         self.begin(pixels, rounded);
-        if projection != Projection::None {
+        if sampler.cube || !sampler.depends {
             self.take_directions(place);
         }
         if sampler.cube {
-            self.project(f64::from(sides[0]), projection == Projection::CubeOfVector, rounded);
+            self.project(f64::from(sampler.sides[0]), sampler.depends, rounded);
         } else {
-            self.take(place, projection == Projection::Divided, rounded);
+            self.take(place, !sampler.depends, rounded);
         }
-        T::measure(unit, &self.at, count, &mut out[..rounded], &mut self.open[..rounded]);
+        T::measure(unit, &self.at, &mut out[..rounded], &mut self.open[..rounded]);
         let special = |n: &usize| self.behind[*n] | self.far[*n] | (self.open[*n] >> 63) as i32 != 0;
         for n in (0..count).filter(special) {
-            out[n] = T::of_quad(unit, self.quad(n, sides, projection));
+            out[n] = T::of_quad(unit, self.quad(n, sampler));
         }
     }
 
@@ -220,7 +195,7 @@ impl Quads {
 
     /// Returns the coordinates at a quad in whole numbers.
     #[cold]
-    fn quad(&self, n: usize, sides: [u32; 2], projection: Projection) -> Option<Quad> {
+    fn quad(&self, n: usize, sampler: &Sampler) -> Option<Quad> {
         if self.far[n] == 0 {
             let at = |pixel: usize| [0, 1].map(|axis: usize| self.at[pixel][axis][n].clamp(-FARTHEST, FARTHEST) as i64);
             return (self.behind[n] == 0).then(|| [at(0), at(1), at(2)]);
@@ -229,27 +204,27 @@ impl Quads {
             return None;
         }
         let direction = |pixel: usize| self.directions[pixel].each_ref().map(|of| of[n]);
-        let first = direction(0);
+        let (first, [width, height]) = (direction(0), sampler.sides.map(i64::from));
         let mut quad = [[0; 2]; 3];
         for (pixel, at) in quad.iter_mut().enumerate() {
-            *at = match projection {
-                Projection::None => [0, 1].map(|axis: usize| self.at[pixel][axis][n] as i64),
-                Projection::Divided => {
+            *at = match (sampler.depends, sampler.cube) {
+                (true, false) => [0, 1].map(|axis: usize| self.at[pixel][axis][n] as i64),
+                (false, false) => {
                     let [s, t, q] = direction(pixel).map(whole);
-                    [quad_ratio(s, q, sides[0].into()), quad_ratio(t, q, sides[1].into())]
+                    [quad_ratio(s, q, width), quad_ratio(t, q, height)]
                 }
-                Projection::Cube => {
+                (false, true) => {
                     let [s, t, m] = Facing::new(first).components(direction(pixel)).map(whole);
-                    [s, t].map(|s| face_coordinate(s, m, sides[0].into(), 16))
+                    [s, t].map(|s| face_coordinate(s, m, width, 16))
                 }
-                Projection::CubeOfVector => {
+                (true, true) => {
                     let bits = |component: f64| i64::from((component as f32).to_bits());
                     let vector = |pixel: usize| shader::direction(direction(pixel).map(bits));
                     let [s, t, m] = on_face(vector(pixel), face_of(vector(0)));
                     if m.mantissa <= 0 {
                         return None;
                     }
-                    [s, t].map(|s| face_coordinate(s, m, sides[0].into(), 16))
+                    [s, t].map(|s| face_coordinate(s, m, width, 16))
                 }
             };
         }

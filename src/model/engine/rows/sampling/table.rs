@@ -105,16 +105,13 @@ fn columns(rows: &[u32], wide: usize) -> Vec<Column> {
 pub(crate) enum Texels {
     /// Texels that are read one at a time.
     Single(Vec<u32>),
-    /// Texels for footprints, with one more at the end of each row.
+    /// Texels for footprints, with one more at the end of each row, of every level if the unit needs a level of detail. All rows are as long as the
+    /// widest.
     Footprints(Vec<Column>),
+    /// The same of 16-bit halves, with the high half in the high bits. 32,768 is added to signed ones. Units that do not filter read them, too.
+    Halves(Vec<Column>),
     /// The footprints of the only channel that varies, by its number: each entry has a texel, its right neighbour, and the two below.
     One(usize, Vec<u32>),
-    /// Footprints of every level. All rows are as long as the widest.
-    Levels(Vec<Column>),
-    /// Footprints of every level of 16-bit halves.
-    WideLevels(Vec<Column>),
-    /// Footprints of 16-bit halves, with the high half in the high bits. 32,768 is added to signed ones. Units that do not filter read them, too.
-    Wide(Vec<Column>),
     /// Single depths, and the comparison with a reference.
     Depths(Vec<u32>, CompareFunction),
 }
@@ -175,7 +172,7 @@ pub(crate) struct Table {
     /// Contents of the channels. 128 is added to signed ones.
     pub(crate) channels: [Channel; 4],
     /// Positions of the levels, if the unit needs a level of detail.
-    levels: Vec<Placed>,
+    pub(crate) levels: Vec<Placed>,
 }
 
 /// The position of a level in a table.
@@ -279,10 +276,9 @@ pub(crate) fn size(unit: &PlannedUnit, axes: &[[Axis; 2]]) -> u64 {
 impl Table {
     /// Returns the number of entries.
     pub(crate) fn entries(&self) -> u64 {
-        use Texels::{Depths, Footprints, Levels, One, Single, Wide, WideLevels};
         let count = match &self.texels {
-            Single(all) | One(_, all) | Depths(all, _) => all.len(),
-            Footprints(all) | Levels(all) | WideLevels(all) | Wide(all) => all.len(),
+            Texels::Single(all) | Texels::One(_, all) | Texels::Depths(all, _) => all.len(),
+            Texels::Footprints(all) | Texels::Halves(all) => all.len(),
         };
         count as u64
     }
@@ -342,18 +338,14 @@ impl Table {
         let mut distinct = (0..4).filter(|n| channels[*n] == Channel::Of(*n));
         let (one, more) = (distinct.next().unwrap_or(0), distinct.next().is_some());
         let count = columns.count as usize * rows.count as usize;
-        let (texels, pitch, face) = if mixes {
-            let face = all.len() / images.len();
-            let all = self::columns(&all, wide);
-            (if unit.is_wide() { Texels::WideLevels(all) } else { Texels::Levels(all) }, wide, face)
-        } else if let Some(comparison) = comparison {
+        let (texels, pitch, face) = if let Some(comparison) = comparison {
             (Texels::Depths(all, comparison.function), columns.count as usize, count)
         } else if unit.is_wide() {
-            (Texels::Wide(self::columns(&all, wide)), wide, wide * high)
+            (Texels::Halves(self::columns(&all, wide)), wide, all.len() / images.len())
         } else if !linear {
             (Texels::Single(all), columns.count as usize, count)
-        } else if more {
-            (Texels::Footprints(self::columns(&all, wide)), wide, wide * high)
+        } else if more || mixes {
+            (Texels::Footprints(self::columns(&all, wide)), wide, all.len() / images.len())
         } else {
             let byte = |texel: u32| texel >> (8 * one) & 255;
             let footprints = all.chunks(wide * high).flat_map(|face| {
@@ -366,12 +358,6 @@ impl Table {
             (Texels::One(one, footprints.collect()), columns.count as usize, count)
         };
         Table { axes, pitch: pitch as i32, face: face as u32, texels, channels, levels: placed }
-    }
-
-    /// Returns the position of a level of a face.
-    pub(crate) fn placed(&self, level: usize, face: u32) -> Placed {
-        let placed = self.levels[level];
-        Placed { first: placed.first + (face * self.face) as i32, ..placed }
     }
 }
 

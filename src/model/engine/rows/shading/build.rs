@@ -6,12 +6,12 @@ use crate::algebra::Algebra;
 use crate::combiner::registers::Registers;
 use crate::combiner::{final_combiner, general};
 use crate::engine::rows::sampling::sampler::Sampler;
-use crate::engine::rows::sampling::table::Channel;
+use crate::engine::rows::sampling::table::{Channel, Table};
 use crate::number::Lane;
 use crate::plan::PlannedDraw;
 use crate::raster::assemble::Corner;
 use crate::rop::{blend, surface};
-use crate::state::{AddressMode, Policies, Register, TextureFormat, TextureKind};
+use crate::state::{Policies, Register};
 use crate::texture::chain::holds_double;
 use crate::texture::planned::PlannedUnit;
 
@@ -79,8 +79,8 @@ fn inputs(draw: &PlannedDraw, samplers: Option<&[Sampler]>, graph: &mut Graph) -
         }
         let unit = draw.units.iter().find(|unit| unit.index == n);
         let sampler = samplers.and_then(|all| all.iter().find(|sampler| sampler.unit == n));
-        registers[register as usize] = match (unit, sampler) {
-            (Some(unit), Some(sampler)) => texture(unit, sampler, graph),
+        registers[register as usize] = match (unit, sampler.and_then(|sampler| sampler.table.as_ref())) {
+            (Some(unit), Some(table)) => texture(unit, table, graph),
             _ if draw.shader.is_some() || unit.is_some() => {
                 let signed = |channel: usize| unit.is_some_and(|unit| holds_double(unit, channel));
                 [0, 1, 2, 3].map(|channel| graph.input(Input::Texture(n, channel), range(signed(channel))))
@@ -108,59 +108,16 @@ fn color(draw: &PlannedDraw, of: fn(&Corner) -> [u8; 4], input: fn(usize) -> Inp
 }
 
 /// Returns the texel of a unit. Channels that are equal in all texels share a value, and channels that do not vary are constants.
-fn texture(unit: &PlannedUnit, sampler: &Sampler, graph: &mut Graph) -> [Value; 4] {
-    let signed = sampler.signed;
-    let range = |channel: usize| range(signed[channel]);
-    if let Some(table) = &sampler.table {
-        return [0, 1, 2, 3].map(|channel: usize| match table.channels[channel] {
-            Channel::Constant(byte) if signed[channel] => graph.constant((i32::from(byte) - 128).signed_texel() as i16),
-            Channel::Constant(byte) => graph.constant(i16::from(byte)),
-            Channel::Of(other) => graph.input(Input::Texture(unit.index, other), range(other)),
-        });
-    }
-    let stays_inside = unit.kind == TextureKind::Cube
-        || unit.border
-        || [unit.state.address_s, unit.state.address_t].iter().all(|mode| *mode != AddressMode::ClampToBorder);
-    // KEY-1: a key that drops no fragment changes channels.
-    let keeps_texels = unit.state.color_key.is_none() || unit.state.kills();
-    let plain = signed == [false; 4] && stays_inside && keeps_texels && !unit.is_wide();
-    [0, 1, 2, 3].map(|channel: usize| {
-        let from = if plain { source(unit.format, channel) } else { Source::Channel(channel) };
-        match from {
-            Source::One => graph.constant(255),
-            Source::Channel(source) => graph.input(Input::Texture(unit.index, source), range(channel)),
-        }
+fn texture(unit: &PlannedUnit, table: &Table, graph: &mut Graph) -> [Value; 4] {
+    let signed = |channel: usize| holds_double(unit, channel);
+    [0, 1, 2, 3].map(|channel: usize| match table.channels[channel] {
+        Channel::Constant(byte) if signed(channel) => graph.constant((i32::from(byte) - 128).signed_texel() as i16),
+        Channel::Constant(byte) => graph.constant(i16::from(byte)),
+        Channel::Of(other) => graph.input(Input::Texture(unit.index, other), range(signed(other))),
     })
 }
 
 /// Returns the range of a channel of a texture register.
 fn range(signed: bool) -> (i16, i16) {
     if signed { (-256, 254) } else { (0, 255) }
-}
-
-/// The source of a channel of a texel.
-enum Source {
-    /// The first channel that always has the same value.
-    Channel(usize),
-    /// The channel is always 255.
-    One,
-}
-
-/// TEX-1: returns the source of a channel, as far as the format determines it.
-fn source(format: TextureFormat, channel: usize) -> Source {
-    match (format, channel) {
-        (TextureFormat::L8 | TextureFormat::A8L8, 1 | 2) | (TextureFormat::I8, _) => Source::Channel(0),
-        (TextureFormat::A8, 0..=2) => Source::One,
-        (
-            TextureFormat::L8
-            | TextureFormat::X8R8G8B8
-            | TextureFormat::R5G6B5
-            | TextureFormat::R6G5B5
-            | TextureFormat::X1R5G5B5,
-            3,
-        ) => Source::One,
-        // SHD-1.
-        _ if format.depth().is_some() => Source::Channel(0),
-        _ => Source::Channel(channel),
-    }
 }

@@ -25,6 +25,8 @@ pub(crate) struct CompiledDraw {
     /// Channels of the primary and of the secondary colour that are read, as masks of bytes.
     pub(crate) read: [u32; 2],
     pub(crate) samplers: Vec<Sampler>,
+    /// Whether something follows from the positions of pixels.
+    pub(crate) interpolates: bool,
     /// The texture shader, if there is one.
     pub(crate) shader: Option<Arc<Shader>>,
     /// Whether the scalar engine draws it, because rows do not sample its textures, or decoding them would not pay.
@@ -52,9 +54,9 @@ impl CompiledDraw {
         (primary & self.read[0]) | (secondary & self.read[1]) != 0
     }
 
-    /// Returns whether something besides colours follows from weights.
+    /// Returns whether something besides colours and depths follows from weights.
     #[inline(always)]
-    pub(crate) fn interpolates(&self) -> bool {
+    pub(crate) fn weighs(&self) -> bool {
         self.shader.is_some() || self.fog.is_some() || !self.samplers.is_empty()
     }
 }

@@ -109,8 +109,12 @@ pub(crate) fn products(lanes: Lanes, [s, t, r]: [&Floats; 3], [x, y, z]: [&Float
 
 /// TSH-5: reflects vectors.
 #[inline(always)]
-pub(crate) fn reflect(lanes: Lanes, [x, y, z]: [&Floats; 3], [a, b, c]: [&Floats; 3], out: &mut [Floats; 3]) {
-    let [out_x, out_y, out_z] = out;
+pub(crate) fn reflect(
+    lanes: Lanes,
+    [x, y, z]: [&Floats; 3],
+    [a, b, c]: [&Floats; 3],
+    [out_x, out_y, out_z]: [&mut Floats; 3],
+) {
     for n in 0..lanes.count() {
         let [reflected_x, reflected_y, reflected_z] = dot::reflect([x[n], y[n], z[n]], [a[n], b[n], c[n]]).vector;
         (out_x[n], out_y[n], out_z[n]) = (reflected_x, reflected_y, reflected_z);
@@ -168,7 +172,7 @@ pub(crate) fn on_faces<const FMA: bool>(
     lanes: Lanes,
     [x, y, z]: [&Floats; 3],
     (size, bias): (u32, i32),
-    [along, down, majors]: &mut [Floats; 3],
+    [along, down, majors]: [&mut Floats; 3],
     u: &mut [i32; BLOCK],
     v: &mut [i32; BLOCK],
     faces: &mut [u32; BLOCK],
@@ -269,9 +273,9 @@ mod tests {
             let (mut u, mut v, mut faces) = ([0; BLOCK], [0; BLOCK], [0; BLOCK]);
             let (all, of, at) = (Lanes::default(), vector.each_ref(), (size, bias));
             if round % 4 < 2 {
-                on_faces::<true>(all, of, at, &mut scratch, &mut u, &mut v, &mut faces);
+                on_faces::<true>(all, of, at, scratch.each_mut(), &mut u, &mut v, &mut faces);
             } else {
-                on_faces::<false>(all, of, at, &mut scratch, &mut u, &mut v, &mut faces);
+                on_faces::<false>(all, of, at, scratch.each_mut(), &mut u, &mut v, &mut faces);
             }
             for n in 0..BLOCK {
                 let bits = |axis: usize| i64::from(vector[axis][n].to_bits());

@@ -176,9 +176,6 @@ impl Graph {
                 if let (Some(a), Some(b)) = (self.times_one(one), self.times_one(other)) {
                     return self.added(a, b);
                 }
-                if self.is_lerp(one, other) {
-                    return self.byte_sum(Pairs::new(&left));
-                }
             }
             _ => {}
         }
@@ -192,13 +189,6 @@ impl Graph {
 
     fn are_bytes(&self, values: &[Value]) -> bool {
         values.iter().all(|v| self.range(*v).0 >= 0 && self.range(*v).1 <= 255)
-    }
-
-    /// Returns whether a factor of one product of bytes is 255 less a factor of the other, so that their sum is a byte.
-    fn is_lerp(&self, (a, b): (Value, Value), (c, d): (Value, Value)) -> bool {
-        let inverse = |v: Value, of: Value| self.node(v) == Node::Map(Mapping::plain(InputMapping::UnsignedInvert), of);
-        self.are_bytes(&[a, b, c, d])
-            && [a, b].iter().any(|v| [c, d].iter().any(|w| inverse(*v, *w) || inverse(*w, *v)))
     }
 
     /// Adds a sum of two products of bytes that is at most 255.

@@ -35,6 +35,8 @@ pub(crate) struct Stage {
     pub(crate) vector: usize,
     /// Channels whose register holds twice the byte.
     pub(crate) doubled: [bool; 4],
+    /// The eye vector of a reflection.
+    pub(crate) eye: Option<[Number; 3]>,
     /// TSH-8: [`luminance_factor`] for the low nine bits of the earlier unit's red register.
     pub(crate) luminance: Vec<f32>,
     /// TSH-6: u and v of each byte, 1/65536 texel.
@@ -103,6 +105,7 @@ impl Shader {
             numbers: [Number::Unread; 4],
             vector: 0,
             doubled: shader.doubled(index, &draw.units),
+            eye: None,
             luminance: Vec::new(),
             dependent: [Vec::new(), Vec::new()],
         };
@@ -120,6 +123,12 @@ impl Shader {
             stage.vector = self.vector(&state);
         }
         match state.operation {
+            ShaderOperation::DotReflectSpecular => {
+                stage.eye = Some([self.stages[1].numbers[3], self.stages[2].numbers[3], stage.numbers[3]]);
+            }
+            ShaderOperation::DotReflectConstantEye { eye } => {
+                stage.eye = Some(eye.map(|component| self.constant(component)))
+            }
             ShaderOperation::PassThrough => {
                 for n in (0..4).filter(|n| planned.live >> n & 1 != 0) {
                     stage.numbers[n] = self.number(draw, index, &state, n, Purpose::Byte);
@@ -167,11 +176,15 @@ impl Shader {
         purpose: Purpose,
     ) -> Number {
         if let Some(value) = draw.assembly.vertices.same_coordinate(state.coordinate_set, component) {
-            self.same.push(purpose.take(value.into()));
-            return Number::Same(self.same.len() - 1);
+            return self.constant(purpose.take(value.into()));
         }
         self.varying.push((index, component, purpose));
         Number::Varying(self.varying.len() - 1)
+    }
+
+    fn constant(&mut self, value: f32) -> Number {
+        self.same.push(value);
+        Number::Same(self.same.len() - 1)
     }
 
     /// Adds the remapped colour that a stage reads. Returns its index.

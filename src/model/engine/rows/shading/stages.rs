@@ -8,7 +8,7 @@ use super::compiled::CompiledDraw;
 use super::dot::{self, Floats};
 use super::shader::{Number, Shader};
 use crate::engine::rows::geometry::weights::Pixels;
-use crate::engine::rows::lanes::{BLOCK, Lanes, PerLane, floor_of_sum, larger, smaller};
+use crate::engine::rows::lanes::{Lanes, PerLane, floor_of_sum, larger, smaller};
 use crate::engine::rows::sampling::fetch::{Reader, SampleUnit, Workspace};
 use crate::engine::rows::sampling::filter::Filter;
 use crate::engine::rows::sampling::place::{FARTHEST, Place};
@@ -18,23 +18,13 @@ use crate::plan::PlannedDraw;
 use crate::state::{ShaderOperation, TEXTURE_UNITS};
 
 /// Registers of the dot unit.
-#[derive(Clone, Debug)]
-#[repr(C, align(64))]
+#[derive(Clone, Debug, Default)]
 struct DotUnit {
     /// Dot product of each stage.
-    dots: [Floats; TEXTURE_UNITS],
-    reflected: [Floats; 3],
-    /// The eye vector, if it is constant.
-    eye: [Floats; 3],
+    dots: [PerLane<f32>; TEXTURE_UNITS],
+    reflected: [PerLane<f32>; 3],
     /// Scratch space of a stage.
-    scratch: [Floats; 3],
-}
-
-impl Default for DotUnit {
-    fn default() -> Self {
-        let zeros = [[0.0; BLOCK]; 3];
-        DotUnit { dots: [[0.0; BLOCK]; TEXTURE_UNITS], reflected: zeros, eye: zeros, scratch: zeros }
-    }
+    scratch: [PerLane<f32>; 3],
 }
 
 /// Buffers of a texture shader.
@@ -57,11 +47,6 @@ impl Workshop {
         self.same.extend(shader.same.iter().map(|value| PerLane::from_value(*value)));
         self.vectors.resize(shader.vectors.len(), Default::default());
         self.is_remapped.resize(shader.vectors.len(), false);
-        for stage in &shader.stages {
-            if let ShaderOperation::DotReflectConstantEye { eye } = stage.state.operation {
-                self.dot.eye = eye.map(|component| [component; BLOCK]);
-            }
-        }
     }
 }
 
@@ -126,7 +111,7 @@ impl Stages<'_> {
                     self.sample(at);
                     let red = compiled.textures[stage.state.previous][0];
                     if let (Some(factors), Some(red)) = (stage.luminance.first_chunk::<512>(), red) {
-                        let [products, ..] = &mut self.workshop.dot.scratch;
+                        let products = self.workshop.dot.scratch[0].block_mut();
                         let red = self.rows[usize::from(red)].block();
                         for n in 0..lanes.count() {
                             products[n] = factors[usize::from(red[n] as u16 % 512)];
@@ -167,7 +152,7 @@ impl Stages<'_> {
                 let [_, green, blue, _] = earlier.map(|slot| slot.map(|slot| self.rows[usize::from(slot)].block()));
                 let (Some(blue), Some(green)) = (blue, green) else { return };
                 let (blue, green) = ((blue, doubled[2]), (green, doubled[1]));
-                let [along, down, _] = &mut self.workshop.dot.scratch;
+                let [along, down, _] = self.workshop.dot.scratch.each_mut().map(PerLane::block_mut);
                 dot::moved(lanes, matrix, blue, green, along, down);
                 self.places[at].shift(lanes, sampler, [along, down]);
             }
@@ -186,7 +171,7 @@ impl Stages<'_> {
             ShaderOperation::DotProduct2D => {
                 for n in 0..2 {
                     self.dot_product(shader, index + n - 1, dotted);
-                    let floats = &self.workshop.dot.dots[index + n - 1];
+                    let floats = self.workshop.dot.dots[index + n - 1].block();
                     self.places[at].set_floats(n, lanes, floats, sampler.sides[n]);
                 }
             }
@@ -194,7 +179,7 @@ impl Stages<'_> {
                 for n in 1..4 {
                     self.dot_product(shader, n, dotted);
                 }
-                let Some((vector, scratch)) = self.workshop.vector((shader, lanes), &operation) else { return };
+                let Some((vector, scratch)) = self.workshop.vector(lanes, stage.eye) else { return };
                 let Place { at: uv, images, fine, direction, .. } = &mut self.places[at];
                 let ([u, v], faces) = (uv.each_mut().map(PerLane::block_mut), images.block_mut());
                 dot::on_faces::<FMA>(lanes, vector, (sampler.sides[0], sampler.bias()), scratch, u, v, faces);
@@ -233,7 +218,12 @@ impl Stages<'_> {
         }
         let Workshop { numbers, same, vectors, dot, .. } = &mut *self.workshop;
         if let [Some(s), Some(t), Some(r)] = [0, 1, 2].map(|n| number(numbers, same, stage.numbers[n])) {
-            dot::products(lanes, [s, t, r], vectors[stage.vector].each_ref().map(PerLane::block), &mut dot.dots[index]);
+            dot::products(
+                lanes,
+                [s, t, r],
+                vectors[stage.vector].each_ref().map(PerLane::block),
+                dot.dots[index].block_mut(),
+            );
         }
     }
 }
@@ -282,25 +272,15 @@ impl Workshop {
         number(&self.numbers, &self.same, of)
     }
 
-    /// Returns the vector of a look-up in a cube map, and scratch space.
+    /// Returns the vector of a look-up in a cube map, reflected if there is an eye vector, and scratch space.
     #[inline(always)]
-    fn vector(
-        &mut self,
-        (shader, lanes): (&Shader, Lanes),
-        operation: &ShaderOperation,
-    ) -> Option<([&Floats; 3], &mut [Floats; 3])> {
+    fn vector(&mut self, lanes: Lanes, eye: Option<[Number; 3]>) -> Option<([&Floats; 3], [&mut Floats; 3])> {
         let Workshop { numbers, same, dot, .. } = self;
-        let DotUnit { dots: [_, first, second, third], reflected, eye, scratch } = &mut **dot;
-        let dots = [&*first, &*second, &*third];
-        let eye = match operation {
-            ShaderOperation::DotReflectSpecular => {
-                let component = |n: usize| number(numbers, same, shader.stages[n].numbers[3]);
-                [component(1)?, component(2)?, component(3)?]
-            }
-            ShaderOperation::DotReflectConstantEye { .. } => eye.each_ref(),
-            _ => return Some((dots, scratch)),
-        };
-        dot::reflect(lanes, dots, eye, reflected);
-        Some((reflected.each_ref(), scratch))
+        let DotUnit { dots: [_, dots @ ..], reflected, scratch } = &mut **dot;
+        let (dots, scratch) = (dots.each_ref().map(PerLane::block), scratch.each_mut().map(PerLane::block_mut));
+        let Some([a, b, c]) = eye else { return Some((dots, scratch)) };
+        let eye = [number(numbers, same, a)?, number(numbers, same, b)?, number(numbers, same, c)?];
+        dot::reflect(lanes, dots, eye, reflected.each_mut().map(PerLane::block_mut));
+        Some((reflected.each_ref().map(PerLane::block), scratch))
     }
 }

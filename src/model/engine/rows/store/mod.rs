@@ -245,14 +245,6 @@ pub(crate) fn test_early(draw: &PlannedDraw, incoming: &[u32], memory: &mut [u32
     test_depth(draw, incoming, memory, alive);
 }
 
-/// Returns `false` if DEP-2 drops all fragments and nothing is written. The words of depth begin with theirs.
-#[inline(always)]
-pub(crate) fn may_pass(draw: &PlannedDraw, incoming: &[u32], memory: &[u32]) -> bool {
-    let Some(state) = &draw.depth_test else { return true };
-    let passes = |(incoming, word): (&u32, &u32)| state.function.passes(*incoming, depth_of(*word));
-    draw.stencil_test.is_some() || incoming.iter().zip(memory).any(passes)
-}
-
 /// DEP-4: drops fragments outside the depth range.
 #[inline(always)]
 fn drop_outside(draw: &PlannedDraw, incoming: &[u32], alive: &mut [bool]) {
