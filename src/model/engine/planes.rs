@@ -7,9 +7,8 @@ use std::collections::BTreeMap;
 use super::tracing::{Pixel, TraceError};
 use super::{BAND, TextureWords, cleared, cleared_colors, draw_defined, walk};
 use crate::number::{Lane, Pair};
-use crate::plan::{Plan, PlannedDraw};
+use crate::plan::Plan;
 use crate::state::Rectangle;
-use crate::texture::planned::Image;
 use crate::threads::on_threads;
 use crate::trace::{Observer, Silent, Step, Unit};
 #[cfg(feature = "threads")]
@@ -282,11 +281,20 @@ fn observe<L: Lane + Sync, R: Record>(
             let words = TextureWords::new(plan, std::slice::from_ref(planned), &frames.surfaces);
             let images = words.images::<L>();
             let counts = options.draw.is_none_or(|only| only == index);
-            let columns = (i64::from(x), i64::from(x + width));
+            let columns = i64::from(x)..i64::from(x + width);
             let draw = |band: &mut Band<R>| {
-                let drawn =
-                    ObservedDraw { plan, planned, index, images: &images, columns, counts, dropped: options.dropped };
-                drawn.shade(band, &chosen);
+                let rows = (band.first_row, band.first_row + (band.pixels.len() / width as usize) as i64);
+                walk::covered(plan, planned, rows, |context, i, j| {
+                    if !columns.contains(&i) || !chosen((i, j)) {
+                        return;
+                    }
+                    let at = (j - band.first_row) as usize * width as usize + (i - columns.start) as usize;
+                    band.record.begin();
+                    let stored = band.pixels[at].shade(planned, context, (i, j), &images, &mut band.record);
+                    if counts && (stored || options.dropped) {
+                        band.record.end(at, [index as i64, context.number as i64, i64::from(stored)]);
+                    }
+                });
             };
             #[cfg(feature = "threads")]
             bands.par_iter_mut().for_each(draw);
@@ -296,34 +304,4 @@ fn observe<L: Lane + Sync, R: Record>(
     };
     on_threads(options.threads, work);
     Ok(bands.into_iter().map(|band| band.record).collect())
-}
-
-/// A draw, and which of its fragments count.
-struct ObservedDraw<'a, L> {
-    plan: &'a Plan,
-    planned: &'a PlannedDraw,
-    index: usize,
-    images: &'a [Image<'a, L>],
-    columns: (i64, i64),
-    counts: bool,
-    dropped: bool,
-}
-
-impl<L: Lane> ObservedDraw<'_, L> {
-    fn shade<R: Record>(&self, band: &mut Band<R>, chosen: &impl Fn((i64, i64)) -> bool) {
-        let (first, end) = self.columns;
-        let width = (end - first) as usize;
-        let rows = (band.first_row, band.first_row + (band.pixels.len() / width) as i64);
-        walk::covered(self.plan, self.planned, rows, |context, i, j| {
-            if !(first..end).contains(&i) || !chosen((i, j)) {
-                return;
-            }
-            let at = (j - band.first_row) as usize * width + (i - first) as usize;
-            band.record.begin();
-            let stored = band.pixels[at].shade(self.planned, context, (i, j), self.images, &mut band.record);
-            if self.counts && (stored || self.dropped) {
-                band.record.end(at, [self.index as i64, context.number as i64, i64::from(stored)]);
-            }
-        });
-    }
 }

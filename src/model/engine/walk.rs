@@ -1,4 +1,4 @@
-//! The walk: triangles in order, rows in pairs, 2x2 quads from left to right.
+//! The walk: triangles in order, rows from the top, pixels from left to right.
 
 use super::context::TriangleContext;
 use super::pixel::{DepthStencil, Fragment};
@@ -75,35 +75,16 @@ pub fn covered(
     rows: (i64, i64),
     mut visit: impl FnMut(&TriangleContext<'_>, i64, i64),
 ) {
-    for ((rows, columns), number) in triangles(planned, rows) {
-        let Some(context) = TriangleContext::new(plan, planned, number, rows) else { continue };
-        let triangle = &context.triangle;
-        let rows = (triangle.rows.0.max(rows.0), triangle.rows.1.min(rows.1));
-        let mut top = rows.0 & !1;
-        while top < rows.1 {
-            let span = |j: i64| if (rows.0..rows.1).contains(&j) { triangle.span(j, columns) } else { (0, 0) };
-            let spans = [span(top), span(top + 1)];
-            let filled = spans.into_iter().filter(|s| s.0 < s.1);
-            let left = filled.clone().map(|s| s.0).min().unwrap_or(0) & !1;
-            let right = filled.map(|s| s.1).max().unwrap_or(0);
-            let mut i = left;
-            while i < right {
-                for (j, span) in [(top, spans[0]), (top + 1, spans[1])] {
-                    for i in [i, i + 1] {
-                        if span.0 <= i && i < span.1 && !context.is_stippled(i, j) {
-                            visit(&context, i, j);
-                        }
-                    }
-                }
-                i += 2;
-            }
-            top += 2;
+    spans(plan, planned, rows, |context, j, (first, end)| {
+        for i in (first..end).filter(|i| !context.is_stippled(*i, j)) {
+            visit(context, i, j);
         }
-    }
+    });
 }
 
 /// Visits the columns that a draw covers in some rows, from the first to before the last, once for each triangle that covers them. A stipple
 /// may leave pixels of them out.
+#[inline(always)]
 pub fn spans(
     plan: &Plan,
     planned: &PlannedDraw,

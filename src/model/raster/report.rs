@@ -1,7 +1,7 @@
 //! The reports of weights and of interpolated numbers to an observer. No value here is used elsewhere.
 
 use super::binary::Binary;
-use super::setup::Triangle;
+use super::setup::{Triangle, edge_function};
 use super::weights::{Linear, Number, Weights, differences};
 use crate::trace::{Observer, Operand, Step, float_step, plain};
 
@@ -33,27 +33,37 @@ fn shortest(n: Binary) -> Binary {
     }
 }
 
+/// Returns the step of an edge function, which is negative outside, or of the side of a line, at a pixel.
+fn edge_step(
+    block: &str,
+    rule: &'static str,
+    (prefix, name): (&str, &str),
+    [a, b, c]: [i64; 3],
+    (x, y): (i64, i64),
+) -> Step {
+    let inputs = vec![
+        plain(format!("d{name}/dx"), a),
+        plain(format!("d{name}/dy"), b),
+        plain(format!("{name}.origin"), c),
+        plain("x", x),
+        plain("y", y),
+    ];
+    Step::plain(block, rule, format!("{prefix}{name}"), edge_function([a, b, c], x, y)).by("edge_function", inputs)
+}
+
 /// Reports edge functions of a triangle at a pixel. The names begin with `prefix`.
 pub(crate) fn edges<O: Observer>(
     block: &str,
     (rule, prefix): (&'static str, &str),
     triangle: &Triangle,
-    (x, y): (i64, i64),
+    pixel: (i64, i64),
     observer: &mut O,
 ) {
-    let e = triangle.edges(x, y);
-    for k in 0..3 {
-        let inputs = vec![
-            plain(format!("dE{k}/dx"), triangle.a[k]),
-            plain(format!("dE{k}/dy"), triangle.b[k]),
-            plain(format!("E{k}.origin"), triangle.c[k]),
-            plain("x", x),
-            plain("y", y),
-        ];
+    for (k, edge) in triangle.edge_functions().into_iter().enumerate() {
+        let step = edge_step(block, rule, (prefix, &format!("E{k}")), edge, pixel);
         let owns = if triangle.owns[k] { "left or top edge" } else { "right or bottom edge" };
-        let on_edge = (rule == "RAS-3" && e[k] == 0).then(|| format!("exactly on a {owns}"));
-        let step = Step::plain(block, rule, format!("{prefix}E{k}"), e[k]);
-        observer.step(step.by("edge_function", inputs).note(on_edge));
+        let on_edge = (rule == "RAS-3" && step.value == 0).then(|| format!("exactly on a {owns}"));
+        observer.step(step.note(on_edge));
     }
 }
 
@@ -62,23 +72,15 @@ pub(crate) fn stroke<O: Observer>(
     block: &str,
     rule: &'static str,
     figure: &Triangle,
-    (x, y): (i64, i64),
+    pixel: (i64, i64),
     observer: &mut O,
 ) {
     let (columns, rows) = (figure.columns, figure.rows);
     for (name, value) in [("left", columns.0), ("right", columns.1 - 1), ("top", rows.0), ("bottom", rows.1 - 1)] {
         observer.step(Step::plain(block, rule, format!("box.{name}"), value));
     }
-    for (k, [a, b, c]) in figure.sides.into_iter().enumerate().filter(|(_, side)| *side != [0; 3]) {
-        let inputs = vec![
-            plain(format!("dside{k}/dx"), a),
-            plain(format!("dside{k}/dy"), b),
-            plain(format!("side{k}.origin"), c),
-            plain("x", x),
-            plain("y", y),
-        ];
-        let step = Step::plain(block, rule, format!("side{k}"), a * x + b * y + c);
-        observer.step(step.by("edge_function", inputs));
+    for (k, side) in figure.sides.into_iter().enumerate().filter(|(_, side)| *side != [0; 3]) {
+        observer.step(edge_step(block, rule, ("", &format!("side{k}")), side, pixel));
     }
 }
 

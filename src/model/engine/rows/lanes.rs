@@ -87,6 +87,14 @@ impl<T> DerefMut for PerLane<T> {
     }
 }
 
+/// Returns the rows of channels. Those that nobody reads are the spare rows, which are the first.
+#[inline(always)]
+pub(crate) fn channels(wanted: [Option<u16>; 4], rows: &mut [PerLane<i16>]) -> Option<[&mut [i16; BLOCK]; 4]> {
+    let slot = |n: usize| wanted[n].map_or(n, usize::from);
+    let [red, green, blue, alpha] = rows.get_disjoint_mut([slot(0), slot(1), slot(2), slot(3)]).ok()?;
+    Some([red.block_mut(), green.block_mut(), blue.block_mut(), alpha.block_mut()])
+}
+
 /// Runs a loop with a comparison that is constant in it, because compilers leave a choice of eight inside a loop.
 macro_rules! for_each_function {
     ($function:expr, |$name:ident| $loop:expr) => {
@@ -102,11 +110,6 @@ macro_rules! for_each_function {
     };
 }
 pub(crate) use for_each_function;
-
-/// Rounds up to whole steps.
-pub(crate) fn whole_steps(count: usize) -> usize {
-    count.next_multiple_of(STEP)
-}
 
 /// Lanes of a block whose pixels lie side by side on the surface. Small, because blocks of small triangles have many of them.
 #[derive(Clone, Copy, Debug, Default)]

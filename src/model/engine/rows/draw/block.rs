@@ -1,7 +1,7 @@
 //! The parts of the engine that are compiled for each instruction set: lanes of a triangle, and blocks to the surface.
 
-use super::Job;
 use super::triangle::Functions;
+use super::{Job, Kernels};
 use crate::engine::context::TriangleContext;
 use crate::engine::rows::geometry::shape::Shape;
 use crate::engine::rows::geometry::weights::Pixels;
@@ -83,7 +83,7 @@ pub(crate) fn test_depths<const FMA: bool>(
     (lane, first): (usize, usize),
     band: &mut Band<'_>,
 ) {
-    let Block { pixels, incoming, alive, runs, depth, used, .. } = block;
+    let Block { pixels, incoming, alive, runs, depth, used, taken, .. } = block;
     let lanes = lane..lane + (*used - lane).next_multiple_of(8);
     depths::depths(context, shape, lanes.clone(), pixels, incoming);
     if job.compiled.drops_late {
@@ -94,6 +94,9 @@ pub(crate) fn test_depths<const FMA: bool>(
     store::test_early(job.draw, &incoming[lanes.clone()], &mut depth[lanes.clone()], &mut alive[lanes]);
     store::write_runs(depth.block(), own, band.depth);
     if !own.iter().any(|run| alive[run.lanes()].contains(&true)) {
+        if job.compiled.reads_surface {
+            store::mark(taken, own);
+        }
         (*used, _) = (lane, runs.truncate(first));
     }
     // Lanes past the end are those of the next triangle.
@@ -104,7 +107,7 @@ pub(crate) fn test_depths<const FMA: bool>(
 #[inline(always)]
 pub(crate) fn shade<const FMA: bool>(job: &Job<'_>, block: &mut Block) {
     let Block { rows, pixels, places, quads, work, workshop, sampled, .. } = block;
-    let Job { draw, compiled, filter, sample, .. } = *job;
+    let (Job { draw, compiled, .. }, Kernels { filter, sample, .. }) = (*job, *job.kernels);
     Stages { draw, compiled, filter, sample, pixels, places, quads, workshop, work, alive: sampled, rows }.run::<FMA>();
 }
 

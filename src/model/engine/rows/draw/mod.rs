@@ -23,8 +23,7 @@ use crate::engine::context::TriangleContext;
 use crate::engine::rows::geometry::shape::Shape;
 use crate::engine::rows::geometry::spans::ROWS;
 use crate::engine::rows::lanes::{BLOCK, Lanes, Run};
-use crate::engine::rows::sampling::fetch::{Reader, SampleUnit};
-use crate::engine::rows::sampling::filter::Filter;
+use crate::engine::rows::sampling::fetch::Reader;
 use crate::engine::rows::sampling::quads::PixelQuads;
 use crate::engine::rows::shading::compiled::CompiledDraw;
 use crate::engine::rows::store;
@@ -39,8 +38,7 @@ pub(crate) struct Job<'a> {
     plan: &'a Plan,
     draw: &'a PlannedDraw,
     compiled: &'a CompiledDraw,
-    filter: Filter,
-    sample: SampleUnit,
+    kernels: &'a Kernels,
 }
 
 /// Draws the part of a draw that lies in a band, of which triangles are given that may cover pixels, in order. Returns the number of covered pixels.
@@ -51,12 +49,11 @@ pub(crate) fn run(
     band: &mut Band<'_>,
     block: &mut Block,
 ) -> u64 {
-    let Kernels { filter, sample, .. } = *kernels;
-    let job = &Job { plan, draw, compiled, filter, sample };
-    let rows = band.rows();
+    let (rows, job) = (band.rows(), &Job { plan, draw, compiled, kernels });
     (kernels.begin)(compiled, block, band);
     let mut context = TriangleContext::vacant(plan, draw);
-    let mut drawing = Drawing { kernels, job, band, block, shaded: 0, stipple: None };
+    let mut drawing =
+        Drawing { job, band, block, shaded: 0, stipple: None, shape: None, is_set_up: false, own: [0; 3] };
     for window in walk::windows(draw, rows) {
         for number in triangles {
             if context.place(*number as usize) {
@@ -68,9 +65,8 @@ pub(crate) fn run(
     drawing.shaded
 }
 
-/// What draws the triangles of a job on a band.
+/// What draws the triangles of a job on a band, one after the other.
 struct Drawing<'d, 'b> {
-    kernels: &'d Kernels,
     job: &'d Job<'d>,
     band: &'d mut Band<'b>,
     block: &'d mut Block,
@@ -78,19 +74,11 @@ struct Drawing<'d, 'b> {
     shaded: u64,
     /// The pattern of the triangle, if it has one.
     stipple: Option<&'d PolygonStipple>,
-}
-
-/// A triangle and its lanes in the block.
-struct Drawn<'t> {
-    context: &'t TriangleContext<'t>,
-    /// Its geometry, once it is needed.
+    /// Its geometry, once that is needed, and whether its functions are set up.
     shape: Option<Shape>,
-    /// The first lane, run and entry of quads that belong to it.
-    lane: usize,
-    run: usize,
-    quads: usize,
-    /// Whether its functions are set up.
     is_set_up: bool,
+    /// The first lane, run and entry of quads that belong to it.
+    own: [usize; 3],
 }
 
 impl Drawing<'_, '_> {
@@ -104,11 +92,11 @@ impl Drawing<'_, '_> {
         if rows.0 >= rows.1 || columns.0 >= columns.1 {
             return;
         }
-        let (lane, run, quads) = (self.block.used, self.block.runs.len(), self.block.quads.len());
-        let mut drawn = Drawn { context, shape: None, lane, run, quads, is_set_up: false };
+        (self.shape, self.is_set_up) = (None, false);
+        self.own = [self.block.used, self.block.runs.len(), self.block.quads.len()];
         // Even, so that no quad is divided.
         for top in (rows.0 & !1..rows.1).step_by(ROWS) {
-            let spans = (self.kernels.find_spans)(triangle, top, columns);
+            let spans = (self.job.kernels.find_spans)(triangle, top, columns);
             let count = (rows.1 - top).min(ROWS as i64) as usize;
             let span = |n: usize| {
                 let is_drawn = n < count && top + n as i64 >= rows.0;
@@ -116,24 +104,24 @@ impl Drawing<'_, '_> {
             };
             if takes_quads {
                 for n in (0..count).step_by(2) {
-                    self.pair(top + n as i64, [span(n), span(n + 1)], &mut drawn);
+                    self.pair(top + n as i64, [span(n), span(n + 1)], context);
                 }
             } else {
                 for n in 0..count {
-                    self.row(top + n as i64, span(n), &mut drawn);
+                    self.row(top + n as i64, span(n), context);
                 }
             }
         }
-        self.close(&mut drawn);
+        self.close(context);
     }
 
     /// Adds the covered pixels of a row.
     #[inline(always)]
-    fn row(&mut self, j: i64, (mut i, end): (i64, i64), drawn: &mut Drawn<'_>) {
+    fn row(&mut self, j: i64, (mut i, end): (i64, i64), context: &TriangleContext<'_>) {
         while i < end {
             let count = ((end - i) as usize).min(BLOCK);
             if self.block.used == BLOCK || self.is_taken((i, j), count) {
-                self.finish_within(drawn);
+                self.finish_within(context);
             }
             let count = count.min(BLOCK - self.block.used);
             let lane = self.block.used;
@@ -144,7 +132,7 @@ impl Drawing<'_, '_> {
     }
 
     /// Adds all pixels of the quads that a triangle meets in two rows.
-    fn pair(&mut self, top: i64, spans: [(i64, i64); 2], drawn: &mut Drawn<'_>) {
+    fn pair(&mut self, top: i64, spans: [(i64, i64); 2], context: &TriangleContext<'_>) {
         let (mut low, mut high) = (i64::MAX, i64::MIN);
         for (first, end) in spans.into_iter().filter(|(first, end)| first < end) {
             (low, high) = (low.min(first & !1), high.max((end + 1) & !1));
@@ -162,7 +150,7 @@ impl Drawing<'_, '_> {
             }
             let is_taken = |n: usize| count(n) > 0 && self.is_taken(at(n), count(n));
             if 2 * columns as usize > BLOCK - self.block.used || is_taken(0) || is_taken(1) {
-                self.finish_within(drawn);
+                self.finish_within(context);
             }
             let (upper, lower) = (self.block.used, self.block.used + columns as usize);
             self.block.quads.add(PixelQuads { upper, lower, count: columns as usize / 2 });
@@ -176,18 +164,10 @@ impl Drawing<'_, '_> {
         }
     }
 
-    /// Notes that lanes have pixels that the triangle covers.
+    /// Notes that lanes have pixels that the triangle covers. Those that a pattern leaves out (STP-1) stay without a pixel.
     #[inline(always)]
-    fn cover(&mut self, pixel: (i64, i64), lane: usize, count: usize) {
-        if self.stipple.is_some() {
-            return self.cover_stippled(pixel, lane, count);
-        }
-        self.run(pixel, lane, count);
-    }
-
-    /// STP-1: leaves pixels out, whose lanes stay without a pixel.
-    fn cover_stippled(&mut self, (i, j): (i64, i64), lane: usize, count: usize) {
-        let Some(stipple) = self.stipple else { return };
+    fn cover(&mut self, (i, j): (i64, i64), lane: usize, count: usize) {
+        let Some(stipple) = self.stipple else { return self.run((i, j), lane, count) };
         let is_drawn = |n: &usize| stroke::stipples(stipple, i + *n as i64, j);
         let mut first = 0;
         while let Some(start) = (first..count).find(is_drawn) {
@@ -207,45 +187,36 @@ impl Drawing<'_, '_> {
         self.shaded += count as u64;
     }
 
-    /// Computes what a triangle's lanes in the block read, but those that the depth test takes out.
-    fn close(&mut self, drawn: &mut Drawn<'_>) {
-        let (kernels, job, block) = (self.kernels, self.job, &mut *self.block);
-        let Drawn { context, shape, lane, run, quads, is_set_up } = drawn;
-        if block.used == *lane {
-            return;
-        }
-        if block.runs.len() == *run {
-            // The pattern leaves all of them out.
-            (block.used, _) = (*lane, block.quads.truncate(*quads));
-            return;
-        }
-        if !job.compiled.interpolates {
-            return;
-        }
-        let shape = shape.get_or_insert_with(|| {
-            let w = context.corners().map(|corner| corner.w);
-            Shape::new(&context.triangle, w, (job.draw.perspective, job.plan.profile), job.compiled.takes_quads)
-        });
-        if job.draw.depth_test.is_some() {
-            (kernels.test_depths)(context, shape, job, block, (*lane, *run), self.band);
-            if block.runs.len() == *run {
-                (block.used, _) = (*lane, block.quads.truncate(*quads));
-                return;
+    /// Computes what a triangle's lanes in the block read, unless the pattern or the depth test takes all of them out.
+    fn close(&mut self, context: &TriangleContext<'_>) {
+        let (job, block, [lane, run, quads]) = (self.job, &mut *self.block, self.own);
+        if block.used > lane && block.runs.len() > run && job.compiled.interpolates {
+            let shape = self.shape.get_or_insert_with(|| {
+                let w = context.corners().map(|corner| corner.w);
+                Shape::new(&context.triangle, w, (job.draw.perspective, job.plan.profile), job.compiled.takes_quads)
+            });
+            if job.draw.depth_test.is_some() {
+                (job.kernels.test_depths)(context, shape, job, block, (lane, run), self.band);
+            }
+            if block.runs.len() > run {
+                if !std::mem::replace(&mut self.is_set_up, true) {
+                    (job.kernels.set_up)(context, shape, job, block);
+                }
+                // Whole vectors, of which the next triangle overwrites what is too much.
+                let lanes = lane..lane + (block.used - lane).next_multiple_of(8);
+                (job.kernels.interpolate)(context, shape, job, block, lanes);
             }
         }
-        if !std::mem::replace(is_set_up, true) {
-            (kernels.set_up)(context, shape, job, block);
+        if block.runs.len() == run {
+            (block.used, _) = (lane, block.quads.truncate(quads));
         }
-        // Whole vectors, of which the next triangle overwrites what is too much.
-        let lanes = *lane..*lane + (block.used - *lane).next_multiple_of(8);
-        (kernels.interpolate)(context, shape, job, block, lanes);
     }
 
     /// Finishes the block although more pixels of a triangle follow.
-    fn finish_within(&mut self, drawn: &mut Drawn<'_>) {
-        self.close(drawn);
+    fn finish_within(&mut self, context: &TriangleContext<'_>) {
+        self.close(context);
         self.finish();
-        (drawn.lane, drawn.run, drawn.quads) = (0, 0, 0);
+        self.own = [0; 3];
     }
 
     /// Returns whether the draw reads the surface and the block has lanes for some of these pixels already.
@@ -256,23 +227,31 @@ impl Drawing<'_, '_> {
 
     /// Computes a block and stores it.
     fn finish(&mut self) {
-        let (kernels, job, block) = (self.kernels, self.job, &mut *self.block);
+        let (job, block) = (self.job, &mut *self.block);
         if block.used == 0 {
             return;
         }
         block.work.lanes = Lanes::first(block.used);
         if job.compiled.shader.is_some() {
-            (kernels.shade)(job, block);
+            (job.kernels.shade)(job, block);
         } else {
             for (n, sampler) in job.compiled.samplers.iter().enumerate() {
                 let unit = &job.draw.units[sampler.index];
                 let wanted = job.compiled.textures[sampler.unit];
-                let reader = Reader { filter: job.filter, unit, sampler, wanted };
+                let reader = Reader { filter: job.kernels.filter, unit, sampler, wanted };
                 let Block { pixels, places, quads, work, sampled, rows, .. } = block;
-                (kernels.sample)(reader, pixels, &mut places[sampler.shares.unwrap_or(n)], quads, work, sampled, rows);
+                (job.kernels.sample)(
+                    reader,
+                    pixels,
+                    &mut places[sampler.shares.unwrap_or(n)],
+                    quads,
+                    work,
+                    sampled,
+                    rows,
+                );
             }
         }
-        (kernels.flush)(job, block, self.band);
+        (job.kernels.flush)(job, block, self.band);
         block.quads.truncate(0);
     }
 }

@@ -8,7 +8,7 @@ use super::sampler::Sampler;
 use super::table::{Axis, Column, Table, Texels};
 use super::taps::{self, Pair};
 use crate::engine::rows::geometry::weights::Pixels;
-use crate::engine::rows::lanes::{BLOCK, Lanes, PerLane, for_each_function};
+use crate::engine::rows::lanes::{BLOCK, Lanes, PerLane, channels, for_each_function};
 use crate::number::Lane;
 use crate::state::{CompareFunction, MipFilter};
 use crate::texture::filter::lerp;
@@ -239,14 +239,6 @@ impl Reader<'_> {
             }
         }
     }
-}
-
-/// Returns the rows of channels. Those that nobody reads go to the spare rows.
-#[inline(always)]
-fn channels(wanted: [Option<u16>; 4], rows: &mut [PerLane<i16>]) -> Option<[&mut [i16; BLOCK]; 4]> {
-    let slot = |n: usize| wanted[n].map_or(n, usize::from);
-    let [red, green, blue, alpha] = rows.get_disjoint_mut([slot(0), slot(1), slot(2), slot(3)]).ok()?;
-    Some([red.block_mut(), green.block_mut(), blue.block_mut(), alpha.block_mut()])
 }
 
 /// SHD-1: compares references with depths.

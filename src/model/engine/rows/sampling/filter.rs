@@ -128,9 +128,6 @@ pub(crate) mod x86 {
     /// Number of footprints that are filtered at a time.
     const STEP: usize = 16;
 
-    /// For each pair of weights: the low bytes of four numbers, twice each, as high bytes.
-    const TWICE: [i8; 16] = [-1, 0, -1, 0, -1, 4, -1, 4, -1, 8, -1, 8, -1, 12, -1, 12];
-
     /// Defines a [filter](super::Filter).
     macro_rules! filter {
         ($name:ident, $target:literal, $steps:ident) => {
@@ -169,7 +166,7 @@ pub(crate) mod x86 {
         [red, green, blue, alpha]: [&mut [i16; STEP]; 4],
     ) {
         let (bytes, words) = (_mm256_set1_epi32(0x00ff_00ff), _mm256_set1_epi32(0xffff));
-        let twice = _mm256_broadcastsi128_si256(load_128(TWICE));
+        let twice = _mm256_broadcastsi128_si256(twice());
         let step = |a, b, weight| _mm256_add_epi16(a, _mm256_mulhrs_epi16(_mm256_sub_epi16(b, a), weight));
         // R and B, and G and A.
         let (mut even, mut odd) = ([_mm256_setzero_si256(); 2], [_mm256_setzero_si256(); 2]);
@@ -188,7 +185,8 @@ pub(crate) mod x86 {
             // In 32,768ths.
             let weights = |of: &[i32; STEP]| {
                 let two = |n: usize| pair(of.as_chunks::<2>().0[4 * half + n].map(|n| n as u32));
-                _mm256_srli_epi16::<1>(_mm256_shuffle_epi8(load_256([0, 1, 2, 3].map(two)), twice))
+                let [a, b, c, d] = [0, 1, 2, 3].map(two);
+                _mm256_srli_epi16::<1>(_mm256_shuffle_epi8(_mm256_setr_epi64x(a, b, c, d), twice))
             };
             let (along, down) = (weights(u), weights(v));
             let filtered = |[a, b, c, d]: [__m256i; 4]| step(step(a, b, along), step(c, d, along), down);
@@ -225,7 +223,7 @@ pub(crate) mod x86 {
             words
         };
         let (bytes, words) = (_mm512_set1_epi32(0x00ff_00ff), load_512(WORDS));
-        let twice = _mm512_broadcast_i32x4(load_128(TWICE));
+        let twice = _mm512_broadcast_i32x4(twice());
         let step = |a, b, weight| _mm512_add_epi16(a, _mm512_mulhrs_epi16(_mm512_sub_epi16(b, a), weight));
         // Four vectors of the texels at the same corner. Each quarter holds one of four pixels side by side.
         let four = |n: usize| {
@@ -270,16 +268,11 @@ pub(crate) mod x86 {
 
     // Vectors are loaded and stored element by element, which compilers turn into one instruction: to do it by pointers would be unsafe.
 
+    /// Returns, for each pair of weights, where the low bytes of four numbers are, twice each, as high bytes.
     #[target_feature(enable = "sse2")]
     #[inline]
-    fn load_128([a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p]: [i8; 16]) -> __m128i {
-        _mm_setr_epi8(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p)
-    }
-
-    #[target_feature(enable = "avx2")]
-    #[inline]
-    fn load_256([a, b, c, d]: [i64; 4]) -> __m256i {
-        _mm256_setr_epi64x(a, b, c, d)
+    fn twice() -> __m128i {
+        _mm_setr_epi8(-1, 0, -1, 0, -1, 4, -1, 4, -1, 8, -1, 8, -1, 12, -1, 12)
     }
 
     #[target_feature(enable = "avx512f")]

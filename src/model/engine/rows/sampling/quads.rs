@@ -14,7 +14,7 @@ use super::facing::Facing;
 use super::place::{FARTHEST, Place};
 use super::sampler::Sampler;
 use crate::engine::rows::geometry::weights::Pixels;
-use crate::engine::rows::lanes::{PerLane, floor_of_quotient, larger, whole_steps};
+use crate::engine::rows::lanes::{PerLane, STEP, floor_of_quotient, larger};
 use crate::raster::binary::Binary;
 use crate::raster::interpolate::face_coordinate;
 use crate::texture::coordinates::{face_of, on_face, quad_ratio};
@@ -85,8 +85,8 @@ impl Quads {
         place: &Place,
         out: &mut Vec<T>,
     ) {
-        let count = self.all.iter().map(|quads| quads.count).sum();
-        let rounded = whole_steps(count);
+        let count: usize = self.all.iter().map(|quads| quads.count).sum();
+        let rounded = count.next_multiple_of(STEP);
         self.far[..rounded].fill(0);
         self.open[..rounded].fill(0);
         if out.len() < rounded {

@@ -2,9 +2,8 @@
 
 use super::table::{self, Axis, Table};
 use crate::plan::PlannedDraw;
-use crate::state::{DepthFormat, Filter, MipFilter, SPRITE_UNIT, ShaderOperation, TextureKind};
+use crate::state::{DepthFormat, Filter, SPRITE_UNIT, ShaderOperation, TextureKind, TextureUnit};
 use crate::texture::chain::holds_double;
-use crate::texture::planned::PlannedUnit;
 use std::sync::Arc;
 
 /// A texture unit that rows can sample.
@@ -101,20 +100,17 @@ impl Sampler {
 pub(crate) fn share(draw: &PlannedDraw, one: &Sampler, other: &Sampler) -> bool {
     let [a, b] = [one, other].map(|sampler| &draw.units[sampler.index]);
     let [first, second] = [a, b].map(|unit| unit.stage.coordinate_set);
+    // All that decides, beside coordinates, which levels a unit reads and where.
+    let levels =
+        |state: &TextureUnit| (state.min_filter, state.mip_filter, state.lod_bias, state.min_lod, state.max_lod);
     !(one.cube || other.cube || one.depends || other.depends || one.is_sprite || other.is_sprite)
         && (one.third.is_none() && other.third.is_none())
         && (one.filters, one.mixes) == (other.filters, other.mixes)
-        && (!one.mixes || selection(a) == selection(b))
+        && (!one.mixes || levels(&a.state) == levels(&b.state))
         && one.pairs + other.pairs == 0
         && (a.kind, a.levels[0]) == (b.kind, b.levels[0])
         && a.state.cylindrical_wrap == b.state.cylindrical_wrap
         // Coordinates are limited in place, so the axes have to be equal.
         && table::axes(a) == table::axes(b)
         && draw.assembly.vertices.same_coordinates(first, second)
-}
-
-/// Returns all that decides, beside coordinates, which levels a unit reads and where.
-fn selection(unit: &PlannedUnit) -> (Filter, MipFilter, [i32; 3]) {
-    let state = &unit.state;
-    (state.min_filter, state.mip_filter, [state.lod_bias, state.min_lod, state.max_lod])
 }

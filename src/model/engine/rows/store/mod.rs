@@ -1,7 +1,7 @@
 //! ROP-1, ROP-5, ROP-6, STN-1 and DEP-2 on rows: reading, packing and writing surface words, and the tests.
 
 use super::interpolate::depths::OUTSIDE;
-use super::lanes::{BLOCK, Lanes, PerLane, Run, for_each_function};
+use super::lanes::{BLOCK, Lanes, PerLane, Run, channels, for_each_function};
 use super::shading::compiled::CompiledDraw;
 use crate::plan::PlannedDraw;
 use crate::rop::{stencil, surface};
@@ -17,37 +17,28 @@ pub(crate) fn read(
     words: &[u32; BLOCK],
     rows: &mut [PerLane<i16>],
 ) {
-    for channel in 0..4 {
-        let Some(row) = compiled.destination[channel] else { continue };
-        let out = rows[usize::from(row)].block_mut();
-        match channel {
-            0 => read_channel::<0>(draw.surface, lanes, words, out),
-            1 => read_channel::<1>(draw.surface, lanes, words, out),
-            2 => read_channel::<2>(draw.surface, lanes, words, out),
-            _ => read_channel::<3>(draw.surface, lanes, words, out),
-        }
+    let Some([red, green, blue, alpha]) = channels(compiled.destination, rows) else { return };
+    match draw.surface {
+        SurfaceFormat::A8R8G8B8 => read_as(SurfaceFormat::A8R8G8B8, lanes, words, red, green, blue, alpha),
+        SurfaceFormat::R5G6B5 => read_as(SurfaceFormat::R5G6B5, lanes, words, red, green, blue, alpha),
+        other => read_as(other, lanes, words, red, green, blue, alpha),
     }
 }
 
-/// Calls the loop with a constant format for the most frequent formats.
+/// Not with all channels in an array, of which compilers would not know that they do not overlap.
 #[inline(always)]
-fn read_channel<const CHANNEL: usize>(
+fn read_as(
     format: SurfaceFormat,
     lanes: Lanes,
     words: &[u32; BLOCK],
-    out: &mut [i16; BLOCK],
+    red: &mut Row,
+    green: &mut Row,
+    blue: &mut Row,
+    alpha: &mut Row,
 ) {
-    match format {
-        SurfaceFormat::A8R8G8B8 => read_as::<CHANNEL>(SurfaceFormat::A8R8G8B8, lanes, words, out),
-        SurfaceFormat::R5G6B5 => read_as::<CHANNEL>(SurfaceFormat::R5G6B5, lanes, words, out),
-        other => read_as::<CHANNEL>(other, lanes, words, out),
-    }
-}
-
-#[inline(always)]
-fn read_as<const CHANNEL: usize>(format: SurfaceFormat, lanes: Lanes, words: &[u32; BLOCK], out: &mut [i16; BLOCK]) {
     for n in 0..lanes.count() {
-        out[n] = i16::from(surface::read(format, words[n])[CHANNEL]);
+        let [r, g, b, a] = surface::read(format, words[n]);
+        (red[n], green[n], blue[n], alpha[n]) = (r.into(), g.into(), b.into(), a.into());
     }
 }
 
@@ -344,10 +335,7 @@ mod tests {
                 }
                 let mut channels = [[0; BLOCK]; 4];
                 let [r, g, b, a] = &mut channels;
-                read_channel::<0>(format, lanes, &words, r);
-                read_channel::<1>(format, lanes, &words, g);
-                read_channel::<2>(format, lanes, &words, b);
-                read_channel::<3>(format, lanes, &words, a);
+                read_as(format, lanes, &words, r, g, b, a);
                 for n in 0..BLOCK {
                     let read = surface::read(format, words[n]).map(i16::from);
                     assert_eq!(channels.each_ref().map(|row| row[n]), read, "{format:?} {:#x}", words[n]);
