@@ -1,7 +1,7 @@
 //! The parts of the engine that are compiled for each instruction set: lanes of a triangle, and blocks to the surface.
 
+use super::Job;
 use super::triangle::Functions;
-use super::{Job, Kernels};
 use crate::engine::context::TriangleContext;
 use crate::engine::rows::geometry::shape::Shape;
 use crate::engine::rows::geometry::weights::Pixels;
@@ -107,7 +107,8 @@ pub(crate) fn test_depths<const FMA: bool>(
 #[inline(always)]
 pub(crate) fn shade<const FMA: bool>(job: &Job<'_>, block: &mut Block) {
     let Block { rows, pixels, places, quads, work, workshop, sampled, .. } = block;
-    let (Job { draw, compiled, .. }, Kernels { filter, sample, .. }) = (*job, *job.kernels);
+    let Job { draw, compiled, .. } = *job;
+    let (filter, sample) = (job.kernels.filter, job.kernels.sample);
     Stages { draw, compiled, filter, sample, pixels, places, quads, workshop, work, alive: sampled, rows }.run::<FMA>();
 }
 

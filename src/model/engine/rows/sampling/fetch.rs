@@ -2,11 +2,12 @@
 
 use super::filter::{Filter, Footprint, GROUP, fetch_footprints, filter_half, filter_one};
 use super::levels::{MipFetches, Placing};
+use super::pairs::Pair;
 use super::place::Place;
 use super::quads::Quads;
 use super::sampler::Sampler;
 use super::table::{Axis, Column, Table, Texels};
-use super::taps::{self, Pair};
+use super::taps;
 use crate::engine::rows::geometry::weights::Pixels;
 use crate::engine::rows::lanes::{BLOCK, Lanes, PerLane, channels, for_each_function};
 use crate::number::Lane;

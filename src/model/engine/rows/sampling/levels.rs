@@ -1,8 +1,8 @@
 //! TEX-9 on rows: the levels of each pixel, and the table entries on them.
 #![allow(clippy::float_arithmetic, reason = "whole numbers that doubles hold, times powers of two")]
 
+use super::pairs::PairsOfQuad;
 use super::table::{Placed, Table};
-use super::taps::PairsOfQuad;
 use crate::engine::rows::lanes::{BLOCK, PerLane, limited};
 use crate::state::{Filter, MipFilter};
 use crate::texture::lod;

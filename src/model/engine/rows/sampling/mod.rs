@@ -5,6 +5,7 @@ pub(super) mod fetch;
 pub(super) mod filter;
 pub(super) mod levels;
 pub(super) mod lods;
+pub(super) mod pairs;
 pub(super) mod place;
 pub(super) mod quads;
 pub(super) mod sampler;

@@ -2,8 +2,8 @@
 #![allow(clippy::float_arithmetic, reason = "whole numbers that doubles hold")]
 
 use super::levels::MipFetches;
+use super::pairs::Pair;
 use super::sampler::Sampler;
-use super::taps::Pair;
 use crate::engine::rows::lanes::{PerLane, limited};
 use std::ops::Range;
 
