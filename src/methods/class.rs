@@ -297,12 +297,7 @@ pub(crate) fn of_unit(method: u32, unit: usize) -> u32 {
     method + 64 * unit as u32
 }
 
-/// Code of a projected texture of two dimensions in SET_SHADER_STAGE_PROGRAM.
-pub(crate) const STAGE_TWO: u32 = 1;
-/// Code of a projected texture of three dimensions.
-pub(crate) const STAGE_THREE: u32 = 2;
-/// Code of a cube map.
-pub(crate) const STAGE_CUBE: u32 = 3;
+pub(crate) use ninebit_program::registers::unit::{STAGE_CUBE, STAGE_THREE, STAGE_TWO};
 
 #[cfg(test)]
 mod tests {

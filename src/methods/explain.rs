@@ -3,12 +3,12 @@
 
 use ninebit::state::{BlendEquation, BlendFactor, CompareFunction, Named, SurfaceFormat};
 use ninebit_program::registers::layout::{config, stages};
+use ninebit_program::registers::unit::{CUBE, FOG_MODES, FORMAT, FORMATS, LEVELS, SIZES};
 use ninebit_program::registers::{Description, RegisterWords, Word as RegisterWord, describe, raster};
 
 use crate::celsius::StateWord;
 use crate::class::{self, Family, METHOD_BYTES, Treatment, of_unit};
-use crate::draw::raster::{FOG_MODES, POLYGON_MODES};
-use crate::draw::texture::FORMATS;
+use crate::draw::raster::POLYGON_MODES;
 use crate::state::State;
 
 /// A word of state with its meaning.
@@ -147,13 +147,13 @@ fn named<T: Copy + Named>(all: &'static [T], value: impl Fn(T) -> u32, word: u32
 }
 
 fn texture(word: u32) -> Option<String> {
-    let (_, format, linear) = FORMATS.iter().find(|(code, ..)| *code == word >> 8 & 0xff)?;
-    let kind = if word >> 2 & 1 != 0 { "cube of " } else { "" };
+    let (_, format, linear) = FORMATS.iter().find(|(code, ..)| *code == FORMAT.value_in(word))?;
+    let kind = if CUBE.is_set(word) { "cube of " } else { "" };
     let size = if *linear {
         "in rows".to_owned()
     } else {
-        let [width, height] = [20, 24].map(|shift| 1_u32 << (word >> shift & 0xf).min(12));
-        format!("{width} x {height}, {} levels", word >> 16 & 0xf)
+        let [width, height, _] = SIZES.map(|field| 1_u32 << field.value_in(word).min(12));
+        format!("{width} x {height}, {} levels", LEVELS.value_in(word))
     };
     Some(format!("{kind}{}, {size}", format.name()))
 }

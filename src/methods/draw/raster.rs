@@ -6,16 +6,15 @@ use ninebit::state::{
     PolygonStipple, ProvokingVertex, Rectangle, ShadeModel, StencilOperation, StencilTest, Topology, VertexDepths,
     WindowClip,
 };
+use ninebit_program::registers::unit::{
+    CLAMPS_DEPTH, FOG_MODES, PERSPECTIVE, STENCIL_OPERATIONS, STENCIL_WRITE, W_BUFFER,
+};
 use ninebit_program::registers::{color_of, raster};
 
 use super::view::View;
 use crate::celsius;
 use crate::class::{self, Family};
 use crate::gap::Gap;
-
-/// The stencil operations' values, in the order of [`StencilOperation`].
-pub(crate) const STENCIL_OPERATIONS: [u32; StencilOperation::ALL.len()] =
-    [0x1e00, 0, 0x1e01, 0x1e02, 0x1e03, 0x150a, 0x8507, 0x8508];
 
 /// The primitives' values, in the order of [`Topology`].
 pub(crate) const TOPOLOGIES: [(Topology, u32); Topology::ALL.len()] = [
@@ -29,16 +28,6 @@ pub(crate) const TOPOLOGIES: [(Topology, u32); Topology::ALL.len()] = [
     (Topology::Lines, 2),
     (Topology::LineStrip, 4),
     (Topology::LineLoop, 3),
-];
-
-/// The fog modes' values, in the order of [`FogMode`].
-pub(crate) const FOG_MODES: [(FogMode, u32); FogMode::ALL.len()] = [
-    (FogMode::Linear, 0x2601),
-    (FogMode::Exp, 0x800),
-    (FogMode::Exp2, 0x801),
-    (FogMode::LinearAbs, 0x804),
-    (FogMode::ExpAbs, 0x802),
-    (FogMode::Exp2Abs, 0x803),
 ];
 
 /// The polygon modes' values.
@@ -78,7 +67,7 @@ pub(crate) fn state(view: &mut View<'_>, depth: DepthFormat, draw: &mut Draw) ->
     operations(view, draw);
     let control = view.get(class::SET_CONTROL0);
     tests(view, depth, control, draw);
-    draw.perspective = control >> 20 & 1 != 0;
+    draw.perspective = PERSPECTIVE.is_set(control);
     visible
 }
 
@@ -247,7 +236,7 @@ fn tests(view: &mut View<'_>, depth: DepthFormat, control: u32, draw: &mut Draw)
             vertex_depths: VertexDepths::Steps,
             range: depth_range(view, depth),
             offset: polygon_offset(view),
-            w_buffer: control >> 16 & 1 != 0,
+            w_buffer: W_BUFFER.is_set(control),
             ..DepthTest::new(function, write)
         });
     }
@@ -260,7 +249,7 @@ fn tests(view: &mut View<'_>, depth: DepthFormat, control: u32, draw: &mut Draw)
         let pass = operation(class::SET_STENCIL_OP_ZPASS);
         let mut byte = |method| view.get(method) as u8;
         let (reference, mask) = (byte(class::SET_STENCIL_FUNC_REF), byte(class::SET_STENCIL_FUNC_MASK));
-        let write_mask = if control & 1 != 0 { byte(class::SET_STENCIL_MASK) } else { 0 };
+        let write_mask = if STENCIL_WRITE.is_set(control) { byte(class::SET_STENCIL_MASK) } else { 0 };
         draw.stencil_test = Some(StencilTest { function, reference, mask, write_mask, fail, depth_fail, pass });
     }
 }
@@ -271,7 +260,7 @@ fn depth_range(view: &mut View<'_>, depth: DepthFormat) -> Option<DepthRange> {
     let control = view.get_or(class::SET_ZMIN_MAX_CONTROL, 1);
     let most = if depth.is_float() { f64::from(f32::MAX) } else { f64::from(depth.largest()) };
     let whole = lowest <= 0.0 && f64::from(highest) >= most;
-    let (clamps, drops_triangles) = (control >> 4 & 1 != 0, control & 1 != 0);
+    let (clamps, drops_triangles) = (CLAMPS_DEPTH.is_set(control), control & 1 != 0);
     if !(lowest.is_finite() && highest.is_finite() && lowest <= highest) {
         view.bad(class::SET_CLIP_MAX);
         return None;

@@ -1,26 +1,17 @@
 //! The texture shader and the combiners of a draw.
 
-use ninebit::state::{Combiners, DotMapping, Named, Profile, ShaderOperation, ShaderStage};
+use ninebit::state::{Combiners, Named, Profile, ShaderOperation, ShaderStage};
 use ninebit_program::registers::layout::{OWN_CONSTANTS, config, stages};
+use ninebit_program::registers::unit::*;
 use ninebit_program::registers::{RegisterWords, Word, decode};
 
 use super::view::View;
-use crate::class::{self, STAGE_CUBE, STAGE_THREE, STAGE_TWO, of_unit};
+use crate::class::{self, of_unit};
 use crate::gap::Gap;
-
-/// The codes of the dot mappings.
-pub(crate) const DOT_MAPPINGS: [(DotMapping, u32); 6] = [
-    (DotMapping::ZeroToOne, 0),
-    (DotMapping::MinusOneToOneD3d, 1),
-    (DotMapping::MinusOneToOneGl, 2),
-    (DotMapping::MinusOneToOne, 3),
-    (DotMapping::Hilo1, 4),
-    (DotMapping::HiloHemisphere, 7),
-];
 
 /// Returns the code of a stage.
 pub(crate) fn code(view: &mut View<'_>, unit: usize) -> u32 {
-    view.get(class::SET_SHADER_STAGE_PROGRAM) >> (5 * unit) & 0x1f
+    view.get(class::SET_SHADER_STAGE_PROGRAM) >> (STAGE_BITS * unit as u32) & ((1 << STAGE_BITS) - 1)
 }
 
 /// Reads a stage of the texture shader.
@@ -36,26 +27,28 @@ pub(crate) fn stage(view: &mut View<'_>, unit: usize) -> ShaderStage {
     stage.operation = match code {
         0 => Op::None,
         STAGE_TWO | STAGE_THREE | STAGE_CUBE => Op::Sample,
-        4 => Op::PassThrough,
-        5 => {
-            let bits = view.get(class::SET_SHADER_CLIP_PLANE_MODE) >> (4 * unit);
+        STAGE_PASS_THROUGH => Op::PassThrough,
+        STAGE_CULL => {
+            let bits = view.get(class::SET_SHADER_CLIP_PLANE_MODE) >> (CLIP_BITS * unit as u32);
             // A set bit keeps what is negative.
             Op::CullFragment { drops_not_negative: [0, 1, 2, 3].map(|n| bits >> n & 1 != 0) }
         }
-        6 => Op::BumpEnvironment { matrix: matrix(view), luminance: None },
-        7 => {
+        STAGE_BUMP => Op::BumpEnvironment { matrix: matrix(view), luminance: None },
+        STAGE_BUMP_LUMINANCE => {
             let scale = float(view, class::SET_TEXTURE_SET_BUMP_ENV_SCALE, 0);
             let offset = float(view, class::SET_TEXTURE_SET_BUMP_ENV_OFFSET, 0);
             Op::BumpEnvironment { matrix: matrix(view), luminance: Some([scale, offset]) }
         }
-        9 => Op::DotProduct2D,
-        0xb => Op::DotReflectDiffuse,
-        0xc => Op::DotReflectSpecular,
-        0xe => Op::DotProductCube,
-        0xf => Op::DependentAlphaRed,
-        0x10 => Op::DependentGreenBlue,
-        0x11 => Op::DotProduct,
-        0x12 => Op::DotReflectConstantEye { eye: [0, 1, 2].map(|n| view.float(class::SET_EYE_VECTOR + 4 * n)) },
+        STAGE_DOT_2D => Op::DotProduct2D,
+        STAGE_REFLECT_DIFFUSE => Op::DotReflectDiffuse,
+        STAGE_REFLECT_SPECULAR => Op::DotReflectSpecular,
+        STAGE_DOT_CUBE => Op::DotProductCube,
+        STAGE_ALPHA_RED => Op::DependentAlphaRed,
+        STAGE_GREEN_BLUE => Op::DependentGreenBlue,
+        STAGE_DOT => Op::DotProduct,
+        STAGE_REFLECT_CONSTANT => {
+            Op::DotReflectConstantEye { eye: [0, 1, 2].map(|n| view.float(class::SET_EYE_VECTOR + 4 * n)) }
+        }
         _ => {
             let name = match code {
                 8 => "BRDF".to_owned(),
@@ -69,8 +62,7 @@ pub(crate) fn stage(view: &mut View<'_>, unit: usize) -> ShaderStage {
     };
     if stage.operation.reads_previous() {
         stage.previous = match unit {
-            2 => (view.get(class::SET_SHADER_OTHER_STAGE_INPUT) >> 16 & 0xf) as usize,
-            3 => (view.get(class::SET_SHADER_OTHER_STAGE_INPUT) >> 20 & 0xf) as usize,
+            2 | 3 => PREVIOUS[unit - 2].value_in(view.get(class::SET_SHADER_OTHER_STAGE_INPUT)) as usize,
             _ => 0,
         };
         if stage.previous >= unit.max(1) {
@@ -79,7 +71,7 @@ pub(crate) fn stage(view: &mut View<'_>, unit: usize) -> ShaderStage {
         }
     }
     if stage.operation.is_dot() && unit > 0 {
-        let code = view.get(class::SET_DOT_RGBMAPPING) >> (4 * (unit - 1)) & 0xf;
+        let code = view.get(class::SET_DOT_RGBMAPPING) >> (MAPPING_BITS * (unit as u32 - 1)) & 0xf;
         match DOT_MAPPINGS.iter().find(|(_, value)| *value == code) {
             Some((mapping, _)) => stage.mapping = *mapping,
             None => view.note(Gap::NotModelled(format!("dot mapping {code} of unit {unit}"))),

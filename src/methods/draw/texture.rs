@@ -3,100 +3,22 @@
 use std::sync::Arc;
 
 use ninebit::state::{
-    AddressMode, BORDER_TEXELS, CUBE_FACES, ColorKey, ColorKeyMode, CompareFunction, Filter, MipFilter, Named, Palette,
-    ShadowComparison, ShadowReference, Texels, TextureFormat, TextureKind, TextureUnit,
+    AddressMode, BORDER_TEXELS, CUBE_FACES, ColorKey, CompareFunction, MipFilter, Named, Palette, ShadowComparison,
+    ShadowReference, Texels, TextureFormat, TextureKind, TextureUnit,
 };
 
 use ninebit_program::registers::color_of;
+use ninebit_program::registers::unit::{
+    ADDRESS_MODES, ANISOTROPY, BORDER_COLOR, COLOR_KEY, COLOR_KEYS, CUBE, DIMENSIONS, FORMAT, FORMATS, LEVELS,
+    MAG_FILTER, MAG_FILTERS, MAX_LOD, MIN_FILTER, MIN_FILTERS, MIN_LOD, MODES, RECTANGLE, SHADOW_FUNCTIONS, SIGNED,
+    SIZES,
+};
 
 use super::view::View;
 use crate::celsius;
 use crate::class::{self, Family, of_unit};
 use crate::gap::Gap;
 use crate::memory::{self, Layout, Memory};
-
-/// The codes of texture formats: swizzled, or compressed, or with a pitch.
-pub(crate) const FORMATS: [(u32, TextureFormat, bool); 48] = [
-    (0x00, TextureFormat::L8, false),
-    (0x01, TextureFormat::I8, false),
-    (0x02, TextureFormat::A1R5G5B5, false),
-    (0x03, TextureFormat::X1R5G5B5, false),
-    (0x04, TextureFormat::A4R4G4B4, false),
-    (0x05, TextureFormat::R5G6B5, false),
-    (0x06, TextureFormat::A8R8G8B8, false),
-    (0x07, TextureFormat::X8R8G8B8, false),
-    (0x0b, TextureFormat::P8, false),
-    (0x0c, TextureFormat::Dxt1, false),
-    (0x0e, TextureFormat::Dxt3, false),
-    (0x0f, TextureFormat::Dxt5, false),
-    (0x10, TextureFormat::A1R5G5B5, true),
-    (0x11, TextureFormat::R5G6B5, true),
-    (0x12, TextureFormat::A8R8G8B8, true),
-    (0x13, TextureFormat::L8, true),
-    (0x16, TextureFormat::R8B8, true),
-    (0x17, TextureFormat::G8B8, true),
-    (0x19, TextureFormat::A8, false),
-    (0x1a, TextureFormat::A8L8, false),
-    (0x1b, TextureFormat::I8, true),
-    (0x1c, TextureFormat::X1R5G5B5, true),
-    (0x1d, TextureFormat::A4R4G4B4, true),
-    (0x1e, TextureFormat::X8R8G8B8, true),
-    (0x1f, TextureFormat::A8, true),
-    (0x20, TextureFormat::A8L8, true),
-    (0x27, TextureFormat::R6G5B5, false),
-    (0x28, TextureFormat::G8B8, false),
-    (0x29, TextureFormat::R8B8, false),
-    (0x2a, TextureFormat::Z24S8, false),
-    (0x2b, TextureFormat::Z24S8F, false),
-    (0x2c, TextureFormat::Z16, false),
-    (0x2d, TextureFormat::Z16F, false),
-    (0x2e, TextureFormat::Z24S8, true),
-    (0x2f, TextureFormat::Z24S8F, true),
-    (0x30, TextureFormat::Z16, true),
-    (0x31, TextureFormat::Z16F, true),
-    (0x32, TextureFormat::Y16, false),
-    (0x33, TextureFormat::R16B16, false),
-    (0x35, TextureFormat::Y16, true),
-    (0x36, TextureFormat::R16B16, true),
-    (0x37, TextureFormat::R6G5B5, true),
-    (0x3a, TextureFormat::A8B8G8R8, false),
-    (0x3b, TextureFormat::B8G8R8A8, false),
-    (0x3c, TextureFormat::R8G8B8A8, false),
-    (0x3f, TextureFormat::A8B8G8R8, true),
-    (0x40, TextureFormat::B8G8R8A8, true),
-    (0x41, TextureFormat::R8G8B8A8, true),
-];
-
-/// The address modes' codes.
-pub(crate) const ADDRESS_MODES: [(AddressMode, u32); 5] = [
-    (AddressMode::Wrap, 1),
-    (AddressMode::Mirror, 2),
-    (AddressMode::ClampToEdge, 3),
-    (AddressMode::ClampToBorder, 4),
-    (AddressMode::Clamp, 5),
-];
-
-/// The minification filters' codes.
-pub(crate) const MIN_FILTERS: [((Filter, MipFilter), u32); 6] = [
-    ((Filter::Nearest, MipFilter::None), 1),
-    ((Filter::Linear, MipFilter::None), 2),
-    ((Filter::Nearest, MipFilter::Nearest), 3),
-    ((Filter::Linear, MipFilter::Nearest), 4),
-    ((Filter::Nearest, MipFilter::Linear), 5),
-    ((Filter::Linear, MipFilter::Linear), 6),
-];
-
-/// The shadow comparisons' codes.
-pub(crate) const SHADOW_FUNCTIONS: [(CompareFunction, u32); 8] = [
-    (CompareFunction::Never, 0),
-    (CompareFunction::Greater, 1),
-    (CompareFunction::Equal, 2),
-    (CompareFunction::GreaterOrEqual, 3),
-    (CompareFunction::Less, 4),
-    (CompareFunction::NotEqual, 5),
-    (CompareFunction::LessOrEqual, 6),
-    (CompareFunction::Always, 7),
-];
 
 /// Bytes between the faces of a cube map are a multiple of this.
 pub(crate) const FACE_BYTES: u64 = 128;
@@ -127,7 +49,7 @@ pub(crate) struct Image {
 pub(crate) fn image(view: &mut View<'_>, unit: usize) -> Option<Image> {
     let mut word = |method| view.get(of_unit(method, unit));
     let (address, format) = (word(class::SET_TEXTURE_OFFSET), word(class::SET_TEXTURE_FORMAT));
-    let code = format >> 8 & 0xff;
+    let code = FORMAT.value_in(format);
     let Some((_, texels, linear)) = FORMATS.iter().find(|(number, ..)| *number == code).copied() else {
         view.note(Gap::NotModelled(format!("texture format 0x{code:02x} of unit {unit}")));
         return None;
@@ -136,12 +58,13 @@ pub(crate) fn image(view: &mut View<'_>, unit: usize) -> Option<Image> {
     {
         view.note(Gap::NotModelled(format!("texel coordinates from the texels' centres at unit {unit}")));
     }
-    let cube = format >> 2 & 1 != 0;
-    let dimensions = format >> 4 & 0xf;
+    let cube = CUBE.is_set(format);
+    let dimensions = DIMENSIONS.value_in(format);
     if linear {
         let rectangle = view.get(of_unit(class::SET_TEXTURE_IMAGE_RECT, unit));
         let pitch = view.get(of_unit(class::SET_TEXTURE_CONTROL1, unit)) >> 16;
-        let size = [rectangle >> 16, rectangle & 0xffff, 1];
+        let [width, height] = RECTANGLE.map(|field| field.value_in(rectangle));
+        let size = [width, height, 1];
         if size.contains(&0) || size.iter().any(|side| *side > 4096) {
             view.bad(of_unit(class::SET_TEXTURE_IMAGE_RECT, unit));
             return None;
@@ -149,7 +72,7 @@ pub(crate) fn image(view: &mut View<'_>, unit: usize) -> Option<Image> {
         let (kind, pitch) = (TextureKind::Rectangle, Some(pitch));
         return Some(Image { address, kind, format: texels, size, levels: 1, border: false, pitch });
     }
-    let [u, v, p] = [20, 24, 28].map(|shift| 1_u32 << (format >> shift & 0xf).min(12));
+    let [u, v, p] = SIZES.map(|field| 1_u32 << field.value_in(format).min(12));
     let kind = match (cube, dimensions) {
         (true, 2) => TextureKind::Cube,
         (false, 3) => TextureKind::ThreeDimensional,
@@ -164,12 +87,12 @@ pub(crate) fn image(view: &mut View<'_>, unit: usize) -> Option<Image> {
         _ if dimensions == 1 => [u, 1, 1],
         _ => [u, v, 1],
     };
-    let border = format >> 3 & 1 == 0;
+    let border = !BORDER_COLOR.is_set(format);
     let longest = size.into_iter().max().unwrap_or(1);
-    let written = (format >> 16 & 0xf).max(1);
+    let written = LEVELS.value_in(format).max(1);
     let mut levels = written.min(longest.ilog2() + 1);
     if kind == TextureKind::ThreeDimensional && levels > 1 {
-        let filter = view.get(of_unit(class::SET_TEXTURE_FILTER, unit)) >> 16 & 0xff;
+        let filter = MIN_FILTER.value_in(view.get(of_unit(class::SET_TEXTURE_FILTER, unit)));
         if filter > 2 {
             view.note(Gap::NotModelled(format!("levels of a volume at unit {unit}")));
         }
@@ -295,8 +218,8 @@ pub(crate) fn unit(view: &mut View<'_>, unit: usize, image: &Image, projects: bo
     let control = view.get(method(class::SET_TEXTURE_CONTROL0));
     let filter = view.get(method(class::SET_TEXTURE_FILTER));
     let mut state = TextureUnit::new(0);
-    let modes = [0, 8, 16].map(|shift| {
-        let code = address >> shift & 0xf;
+    let modes = MODES.map(|field| {
+        let code = field.value_in(address);
         ADDRESS_MODES.iter().find(|(_, value)| *value == code).map(|(mode, _)| *mode)
     });
     let used = match image.kind {
@@ -312,25 +235,23 @@ pub(crate) fn unit(view: &mut View<'_>, unit: usize, image: &Image, projects: bo
     state.address_r = if used > 2 { r } else { AddressMode::Wrap };
     state.cylindrical_wrap = [4, 12].map(|bit| address >> bit & 1 != 0 && image.kind == TextureKind::TwoDimensional);
     filters(view, unit, filter, &mut state);
-    (state.min_lod, state.max_lod) = ((control >> 18 & 0xfff) as i32, (control >> 6 & 0xfff) as i32);
+    (state.min_lod, state.max_lod) = (MIN_LOD.value_in(control) as i32, MAX_LOD.value_in(control) as i32);
     if image.levels == 1 {
         // There is no other level.
         state.mip_filter = MipFilter::None;
     }
     // Signed, of thirteen bits.
     state.lod_bias = (filter << 19) as i32 >> 19;
-    state.signed = [29, 30, 31, 28].map(|bit| filter >> bit & 1 != 0);
+    state.signed = SIGNED.map(|field| field.is_set(filter));
     if [state.address_s, state.address_t, state.address_r].contains(&AddressMode::ClampToBorder) && !image.border {
         state.border_color = color_of(view.get(method(class::SET_TEXTURE_BORDER_COLOR)));
     }
-    let anisotropy = 1 << (control >> 4 & 3);
+    let anisotropy = 1 << ANISOTROPY.value_in(control);
     state.anisotropy = anisotropy;
     if control >> 2 & 1 != 0 {
         view.note(Gap::NotModelled(format!("texels of alpha 0 that remove the pixel at unit {unit}")));
     }
-    let mode =
-        [None, Some(ColorKeyMode::Alpha), Some(ColorKeyMode::Color), Some(ColorKeyMode::Texel)][(control & 3) as usize];
-    if let Some(mode) = mode {
+    if let Some((mode, _)) = COLOR_KEYS.into_iter().find(|(_, code)| *code == COLOR_KEY.value_in(control)) {
         let color = color_of(view.get(class::SET_COLOR_KEY_COLOR + 4 * unit as u32));
         state.color_key = Some(ColorKey { color, mode });
     }
@@ -347,16 +268,15 @@ pub(crate) fn unit(view: &mut View<'_>, unit: usize, image: &Image, projects: bo
 }
 
 fn filters(view: &mut View<'_>, unit: usize, filter: u32, state: &mut TextureUnit) {
-    let (min, mag) = (filter >> 16 & 0xff, filter >> 24 & 0xf);
+    let (min, mag) = (MIN_FILTER.value_in(filter), MAG_FILTER.value_in(filter));
     match MIN_FILTERS.iter().find(|(_, value)| *value == min) {
         Some(((filter, levels), _)) => (state.min_filter, state.mip_filter) = (*filter, *levels),
         None if min == 7 => view.note(Gap::NotModelled(format!("a convolution filter at unit {unit}"))),
         None => view.bad(of_unit(class::SET_TEXTURE_FILTER, unit)),
     }
-    match mag {
-        1 => state.mag_filter = Filter::Nearest,
-        2 => state.mag_filter = Filter::Linear,
-        4 => view.note(Gap::NotModelled(format!("a convolution filter at unit {unit}"))),
-        _ => view.bad(of_unit(class::SET_TEXTURE_FILTER, unit)),
+    match MAG_FILTERS.iter().find(|(_, code)| *code == mag) {
+        Some((filter, _)) => state.mag_filter = *filter,
+        None if mag == 4 => view.note(Gap::NotModelled(format!("a convolution filter at unit {unit}"))),
+        None => view.bad(of_unit(class::SET_TEXTURE_FILTER, unit)),
     }
 }

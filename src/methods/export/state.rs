@@ -5,12 +5,15 @@ use ninebit::state::{
     Cull, DepthFormat, DepthRange, DepthTest, Draw, Fog, FrontFace, LineRasterization, PolygonMode, PolygonStipple,
     ProvokingVertex, Rectangle, Scene, ShadeModel, StencilTest, Target, Topology,
 };
+use ninebit_program::registers::unit::{
+    CLAMPS_DEPTH, FLOAT_DEPTH, FOG_MODES, PERSPECTIVE, STENCIL_OPERATIONS, STENCIL_WRITE, SURFACE_DEPTH, W_BUFFER,
+};
 use ninebit_program::registers::{color_word, raster};
 
 use super::memory::{MemoryMap, pitch};
 use super::{ExportError, Words, refuse};
 use crate::class::{self, Family};
-use crate::draw::raster::{FOG_MODES, POLYGON_MODES, STENCIL_OPERATIONS};
+use crate::draw::raster::POLYGON_MODES;
 
 /// Returns the code of a choice.
 pub(super) fn code<T: PartialEq>(all: &[(T, u32)], choice: T) -> u32 {
@@ -19,11 +22,11 @@ pub(super) fn code<T: PartialEq>(all: &[(T, u32)], choice: T) -> u32 {
 
 /// Returns the bits of SET_CONTROL0 that say how depths are stored.
 fn float_bit(target: &Target) -> u32 {
-    u32::from(target.depth.is_some_and(|depth| depth.format.is_float())) << 12
+    FLOAT_DEPTH.put(target.depth.is_some_and(|depth| depth.format.is_float()).into())
 }
 
 /// Binds a target.
-fn bind(words: &mut Words, placed: &MemoryMap, index: usize, target: &Target) {
+pub(super) fn bind(words: &mut Words, placed: &MemoryMap, index: usize, target: &Target) {
     let depth = target.depth.map_or(DepthFormat::Z24S8, |depth| depth.format);
     let layout = if placed.swizzled[index] { 2 } else { 1 };
     let sides = if placed.swizzled[index] { target.width.ilog2() << 16 | target.height.ilog2() << 24 } else { 0 };
@@ -32,7 +35,10 @@ fn bind(words: &mut Words, placed: &MemoryMap, index: usize, target: &Target) {
         (true, Family::Celsius) => 0,
         (false, _) => 1,
     };
-    words.set(class::SET_SURFACE_FORMAT, raster::surface_format(target.format) | zeta << 4 | layout << 8 | sides);
+    words.set(
+        class::SET_SURFACE_FORMAT,
+        raster::surface_format(target.format) | SURFACE_DEPTH.put(zeta) | layout << 8 | sides,
+    );
     let zeta_pitch = pitch(target.width, if depth.has_stencil() { 4 } else { 2 });
     words.set(class::SET_SURFACE_PITCH, pitch(target.width, target.format.bytes()) & 0xffff | zeta_pitch << 16);
     words.set(class::SET_SURFACE_COLOR_OFFSET, placed.surfaces[index]);
@@ -80,8 +86,10 @@ pub(super) fn draw(words: &mut Words, scene: &Scene, draw: &Draw) -> Result<(), 
     let target = &scene.targets[draw.target];
     let w_buffer = draw.depth_test.is_some_and(|test| test.w_buffer);
     let writes_stencil = draw.stencil_test.is_some_and(|test| test.write_mask != 0);
-    let control =
-        u32::from(writes_stencil) | float_bit(target) | u32::from(w_buffer) << 16 | u32::from(draw.perspective) << 20;
+    let control = STENCIL_WRITE.put(writes_stencil.into())
+        | float_bit(target)
+        | W_BUFFER.put(w_buffer.into())
+        | PERSPECTIVE.put(draw.perspective.into());
     words.set(class::SET_CONTROL0, control);
     figures(words, draw);
     fog(words, &draw.fog)?;
@@ -199,7 +207,7 @@ fn depth(words: &mut Words, test: &DepthTest, format: DepthFormat) {
     let range = test.range.unwrap_or(whole);
     words.number(class::SET_CLIP_MIN, range.lowest);
     words.number(class::SET_CLIP_MAX, range.highest);
-    words.set(class::SET_ZMIN_MAX_CONTROL, u32::from(range.clamps) << 4 | u32::from(range.drops_triangles));
+    words.set(class::SET_ZMIN_MAX_CONTROL, CLAMPS_DEPTH.put(range.clamps.into()) | u32::from(range.drops_triangles));
     let offset = test.offset;
     words.set(class::SET_POLY_OFFSET_FILL_ENABLE, (offset.bias != 0.0 || offset.factor != 0.0).into());
     words.number(class::SET_POLYGON_OFFSET_SCALE_FACTOR, offset.factor);

@@ -1,19 +1,15 @@
 //! Words of the texture units, the texture shader and the combiners.
 
 use ninebit::plan::texture_size;
-use ninebit::state::{
-    ColorKeyMode, Draw, Filter, Scene, ShaderOperation, ShadowReference, Texture, TextureImage, TextureKind,
-    TextureUnit,
-};
+use ninebit::state::{Draw, Scene, ShaderOperation, ShadowReference, Texture, TextureImage, TextureKind, TextureUnit};
+use ninebit_program::registers::unit::*;
 use ninebit_program::registers::{color_word, encode};
 
 use super::memory::{MemoryMap, pitch};
 use super::state::code;
 use super::{ExportError, Words, refuse};
 use crate::celsius;
-use crate::class::{self, Family, STAGE_CUBE, STAGE_THREE, STAGE_TWO, of_unit};
-use crate::draw::shader::DOT_MAPPINGS;
-use crate::draw::texture::{ADDRESS_MODES, FORMATS, MIN_FILTERS, SHADOW_FUNCTIONS};
+use crate::class::{self, Family, of_unit};
 
 /// Sets the units, the shader and the combiners of a draw.
 pub(super) fn units(words: &mut Words, scene: &Scene, placed: &MemoryMap, draw: &Draw) -> Result<(), ExportError> {
@@ -26,16 +22,16 @@ pub(super) fn units(words: &mut Words, scene: &Scene, placed: &MemoryMap, draw: 
             self::unit(words, scene, placed, (index, unit))?;
         }
         let kind = unit.map(|unit| (scene.textures[unit.texture].kind, unit.shadow));
-        programs |= operation(words, index, &stage.operation, kind) << (5 * index);
+        programs |= operation(words, index, &stage.operation, kind) << (STAGE_BITS * index as u32);
         if stage.operation.reads_previous() && index > 1 {
-            inputs |= (stage.previous as u32) << (8 + 4 * index);
+            inputs |= PREVIOUS[index - 2].put(stage.previous as u32);
         }
         if stage.operation.is_dot() && index > 0 {
-            mappings |= code(&DOT_MAPPINGS, stage.mapping) << (4 * (index - 1));
+            mappings |= code(&DOT_MAPPINGS, stage.mapping) << (MAPPING_BITS * (index as u32 - 1));
         }
         if let ShaderOperation::CullFragment { drops_not_negative } = stage.operation {
             let bits = (0..4).filter(|n| drops_not_negative[*n]).map(|n| 1 << n).sum::<u32>();
-            culls |= bits << (4 * index);
+            culls |= bits << (CLIP_BITS * index as u32);
         }
     }
     if words.family == Family::Celsius {
@@ -74,44 +70,40 @@ fn operation(
             Some((_, Some(shadow))) if shadow.reference == ShadowReference::R => STAGE_THREE,
             _ => STAGE_TWO,
         },
-        Op::PassThrough => 4,
-        Op::CullFragment { .. } => 5,
+        Op::PassThrough => STAGE_PASS_THROUGH,
+        Op::CullFragment { .. } => STAGE_CULL,
         Op::BumpEnvironment { matrix, luminance } => {
             for (n, number) in (0..).zip(matrix) {
                 words.number(of_unit(class::SET_TEXTURE_SET_BUMP_ENV_MAT, index) + 4 * n, *number);
             }
-            let Some([scale, offset]) = luminance else { return 6 };
+            let Some([scale, offset]) = luminance else { return STAGE_BUMP };
             words.number(of_unit(class::SET_TEXTURE_SET_BUMP_ENV_SCALE, index), *scale);
             words.number(of_unit(class::SET_TEXTURE_SET_BUMP_ENV_OFFSET, index), *offset);
-            7
+            STAGE_BUMP_LUMINANCE
         }
-        Op::DotProduct2D => 9,
-        Op::DotReflectDiffuse => 0xb,
-        Op::DotReflectSpecular => 0xc,
-        Op::DotProductCube => 0xe,
-        Op::DependentAlphaRed => 0xf,
-        Op::DependentGreenBlue => 0x10,
-        Op::DotProduct => 0x11,
+        Op::DotProduct2D => STAGE_DOT_2D,
+        Op::DotReflectDiffuse => STAGE_REFLECT_DIFFUSE,
+        Op::DotReflectSpecular => STAGE_REFLECT_SPECULAR,
+        Op::DotProductCube => STAGE_DOT_CUBE,
+        Op::DependentAlphaRed => STAGE_ALPHA_RED,
+        Op::DependentGreenBlue => STAGE_GREEN_BLUE,
+        Op::DotProduct => STAGE_DOT,
         Op::DotReflectConstantEye { eye } => {
             for (n, number) in (0..).zip(eye) {
                 words.number(class::SET_EYE_VECTOR + 4 * n, *number);
             }
-            0x12
+            STAGE_REFLECT_CONSTANT
         }
     }
 }
 
 /// Returns SET_TEXTURE_CONTROL0 of a unit that samples.
 fn control(unit: &TextureUnit) -> u32 {
-    let key = unit.color_key.map_or(0, |key| match key.mode {
-        ColorKeyMode::Alpha => 1,
-        ColorKeyMode::Color => 2,
-        ColorKeyMode::Texel => 3,
-    });
+    let key = unit.color_key.map_or(0, |key| code(&COLOR_KEYS, key.mode));
     1 << 30
-        | (unit.min_lod as u32 & 0xfff) << 18
-        | (unit.max_lod as u32 & 0xfff) << 6
-        | unit.anisotropy.ilog2() << 4
+        | MIN_LOD.put(unit.min_lod as u32)
+        | MAX_LOD.put(unit.max_lod as u32)
+        | ANISOTROPY.put(unit.anisotropy.ilog2())
         | key
 }
 
@@ -142,11 +134,11 @@ fn unit(
             return refuse(format!("rows of texture `{}` are too long for SET_TEXTURE_CONTROL1", texture.name));
         }
         set(class::SET_TEXTURE_CONTROL1, pitch << 16);
-        set(class::SET_TEXTURE_IMAGE_RECT, width << 16 | height);
+        set(class::SET_TEXTURE_IMAGE_RECT, RECTANGLE[0].put(width) | RECTANGLE[1].put(height));
     }
     let [s, t, r] = [unit.address_s, unit.address_t, unit.address_r].map(|mode| code(&ADDRESS_MODES, mode));
     let [wrap_s, wrap_t] = unit.cylindrical_wrap.map(u32::from);
-    let address = s | wrap_s << 4 | t << 8 | wrap_t << 12 | r << 16;
+    let address = MODES[0].put(s) | wrap_s << 4 | MODES[1].put(t) | wrap_t << 12 | MODES[2].put(r);
     if celsius {
         let Some(word) = celsius::texture_format(format, address) else {
             return refuse(format!("texture `{}` has a format that GeForce 256 does not have", texture.name));
@@ -156,10 +148,11 @@ fn unit(
         set(class::SET_TEXTURE_FORMAT, format);
         set(class::SET_TEXTURE_ADDRESS, address);
     }
-    let signs: u32 = [29, 30, 31, 28].into_iter().zip(unit.signed).map(|(bit, signed)| u32::from(signed) << bit).sum();
+    let signs: u32 = SIGNED.into_iter().zip(unit.signed).map(|(field, signed)| field.put(signed.into())).sum();
     let min = code(&MIN_FILTERS, (unit.min_filter, unit.mip_filter));
-    let mag = if unit.mag_filter == Filter::Linear { 2 } else { 1 };
-    set(class::SET_TEXTURE_FILTER, signs | mag << 24 | min << 16 | 1 << 13 | unit.lod_bias as u32 & 0x1fff);
+    let mag = code(&MAG_FILTERS, unit.mag_filter);
+    let filters = MAG_FILTER.put(mag) | MIN_FILTER.put(min) | LOD_BIAS.put(unit.lod_bias as u32);
+    set(class::SET_TEXTURE_FILTER, signs | filters | 1 << 13);
     if !celsius || unit.border_color != [0; 4] {
         set(class::SET_TEXTURE_BORDER_COLOR, color_word(unit.border_color));
     }
@@ -189,15 +182,17 @@ fn format(scene: &Scene, texture: &Texture, index: usize) -> Result<u32, ExportE
         return refuse(format!("texture `{}` has a format without a code for its kind", texture.name));
     };
     let dimensions = if texture.kind == TextureKind::ThreeDimensional { 3 } else { 2 };
-    let mut word = 1 | dimensions << 4 | code << 8 | u32::from(texture.kind == TextureKind::Cube) << 2;
+    let mut word =
+        1 | DIMENSIONS.put(dimensions) | FORMAT.put(*code) | CUBE.put((texture.kind == TextureKind::Cube).into());
     let (levels, layers, border) = match &texture.image {
         TextureImage::Texels(texels) => (texels.levels, texels.layers, texels.border),
         _ => (1, 1, false),
     };
-    word |= u32::from(!border) << 3 | levels << 16;
+    word |= BORDER_COLOR.put((!border).into()) | LEVELS.put(levels);
     if !linear {
         let (width, height) = texture_size(scene, index);
-        word |= width.ilog2() << 20 | height.ilog2() << 24 | layers.ilog2() << 28;
+        let logs = SIZES.into_iter().zip([width, height, layers]);
+        word |= logs.map(|(field, side)| field.put(side.ilog2())).sum::<u32>();
     }
     Ok(word)
 }

@@ -9,6 +9,7 @@ pub mod layout;
 mod program;
 pub mod raster;
 mod text;
+pub mod unit;
 
 use ninebit::state::{Named, Profile, named};
 
