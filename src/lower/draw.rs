@@ -4,16 +4,17 @@ use ninebit::number::{Integer, Register as _};
 use ninebit::plan::Plan;
 use ninebit::state::{CompareFunction, Scene};
 
-use crate::binary::counted;
 use crate::code::{Code, Operand, Test};
-use crate::helper::Helper;
 use crate::input::Input;
 use crate::number::{Number, Word};
 use crate::pixel::{Builder, Function, Options, Result, UNBOUND, is_idle, loaded};
 use crate::place::{Place, Projection, Unit};
 use crate::stage::Stages;
 use crate::truth::Truth;
-use crate::whole::Whole;
+use crate::whole::{Interpolator, Whole};
+
+/// The bits of columns and rows that all pixels of a quad share.
+pub(crate) const QUAD: i64 = 4094;
 
 /// What a unit that is not planned gives: nobody reads it, or the plan knows that all of it is 0.
 const UNPLANNED: [Number<'static>; 4] = [Number::ZERO; 4];
@@ -24,22 +25,16 @@ impl Function {
         let (draw, planned) = (&scene.draws[number], &plan.draws()[number]);
         let code = Code::default();
         let builder = Builder { code: &code, options: *options };
-        let whole = Whole { code: &code, planned, perspective: planned.perspective };
+        let interpolator = Interpolator { code: &code, perspective: planned.perspective };
+        let whole = Whole { interpolator, planned };
         let (x, y) = (whole.input(Input::X), whole.input(Input::Y));
         let e = whole.edges(x, y, true);
         let sample = whole.sample::<true>(e);
-        let color_weight = |k: usize, name: &str| {
-            let limit = [1, 8, 256].map(Operand::Constant);
-            let b = sample.b[k].operand(&code);
-            let weight = counted(&code, Helper::Floor, &[b, limit[0], limit[1], limit[2]]).within(0, 256);
-            code.name(weight.operand(), || name.to_string());
-            weight
-        };
-        let [w0, w2] = [color_weight(0, "W0"), color_weight(2, "W2")];
-        let colors = [0, 1].map(|set| whole.color(set, [w0, w2]));
+        let weights = whole.color_weights(&sample);
+        let colors = [0, 1].map(|set| whole.color(set, weights));
         let [r, g, b] = draw.fog.color.map(|byte| Number::Constant(byte.into()));
         let fog = [r, g, b, whole.fog(sample.b)];
-        let quad = [x, y].map(|at| at.masked(4094));
+        let quad = [x, y].map(|at| at.masked(QUAD));
         let shader = planned.shader.as_ref().map(|shader| {
             let scale = options.policies.dependent_scale;
             let first = [0, 1, 2, 3].map(|n| if is_idle(draw, n) { UNBOUND } else { UNPLANNED });

@@ -10,20 +10,21 @@ use ninebit::texture::stage::PlannedShader;
 use ninebit::texture::{dot, shader, single};
 
 use crate::binary::{Called, counted};
+use crate::code::{Code, Operand};
 use crate::helper::Helper;
 use crate::number::Number;
 use crate::pixel::UNBOUND;
 use crate::place::{Place, Projection, Unit};
 use crate::triangle::Field;
 use crate::truth::Truth;
-use crate::whole::{Sample, Whole};
+use crate::whole::{Interpolator, Sample, Whole};
 
 /// A number of the dot unit: the pattern of binary32.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Single<'a>(pub(crate) Number<'a>);
 
 impl<'a> Single<'a> {
-    fn called(helper: Helper, a: Number<'a>, b: Number<'a>) -> Single<'a> {
+    pub(crate) fn called(helper: Helper, a: Number<'a>, b: Number<'a>) -> Single<'a> {
         let of = [a.operand(), b.operand()];
         Single(match a.code().or(b.code()) {
             Some(code) => counted(code, helper, &of),
@@ -31,7 +32,7 @@ impl<'a> Single<'a> {
         })
     }
 
-    fn constant(value: f32) -> Single<'a> {
+    pub(crate) fn constant(value: f32) -> Single<'a> {
         Single(Number::Constant(value.to_bits().into()))
     }
 }
@@ -105,7 +106,7 @@ impl<'a> Stages<'a, '_, '_> {
         let (register, dropped) = match (planned.state.operation, unit) {
             (ShaderOperation::PassThrough, _) => (self.pass_through(index, sample), Truth::Known(false)),
             (ShaderOperation::CullFragment { drops_not_negative }, _) => {
-                (UNBOUND, self.drops(index, drops_not_negative, sample))
+                (UNBOUND, self.whole.drops(index, drops_not_negative.map(Truth::Known), sample))
             }
             (ShaderOperation::DotProduct, _) => ([Number::ZERO; 4], Truth::Known(false)),
             (ShaderOperation::Sample, Some(unit)) => {
@@ -130,52 +131,17 @@ impl<'a> Stages<'a, '_, '_> {
         state.dropped = state.dropped | dropped;
     }
 
-    /// Returns a component of a stage's coordinates.
-    fn component(&self, index: usize, n: usize, sample: &Sample<'a>) -> Called<'a> {
-        self.whole.code.by("WGT-1");
-        self.whole.linear(|part| Field::Coordinate(index, n, part)).at(sample.b)
-    }
-
-    /// Returns it in single precision.
-    fn rounded(&self, index: usize, n: usize, sample: &Sample<'a>) -> Single<'a> {
-        let code = self.whole.code;
-        Single(counted(code, Helper::Rounded, &[self.component(index, n, sample).operand(code)]))
-    }
-
-    fn parts(&self, index: usize, n: usize, sample: &Sample<'a>) -> Binary<Number<'a>> {
-        self.component(index, n, sample).parts(self.whole.code, (-(1 << 26), 1 << 26))
+    /// Returns the bytes of an earlier unit's colour.
+    fn bytes(&self, unit: usize, state: &State<'a>) -> [Number<'a>; 4] {
+        let doubled = self.shader.doubled(unit, &self.whole.planned.units);
+        [0, 1, 2, 3].map(|n: usize| byte(state.registers[unit][n], Truth::Known(doubled[n])))
     }
 
     /// TSH-9: returns the coordinates, limited, as a colour.
     fn pass_through(&self, index: usize, sample: &Sample<'a>) -> [Number<'a>; 4] {
         let live = self.shader.stages[index].live;
-        [0, 1, 2, 3].map(|n: usize| {
-            if live >> n & 1 == 0 {
-                return Number::ZERO;
-            }
-            let parts = self.parts(index, n, sample);
-            self.whole.code.by("TSH-9");
-            convert::factor(fog::factor(parts)).within(0, 255)
-        })
-    }
-
-    /// TSH-10: returns whether a coordinate has the sign that is dropped.
-    fn drops(&self, index: usize, not_negative: [bool; 4], sample: &Sample<'a>) -> Truth<'a> {
-        let drops = |n: usize| {
-            let parts = self.parts(index, n, sample);
-            self.whole.code.by("TSH-10");
-            parts.mantissa.is_negative() ^ Truth::Known(not_negative[n])
-        };
-        (0..4).map(drops).fold(Truth::Known(false), |any, one| any | one)
-    }
-
-    /// Returns the bytes of an earlier unit's colour.
-    fn bytes(&self, unit: usize, state: &State<'a>) -> [Number<'a>; 4] {
-        let doubled = self.shader.doubled(unit, &self.whole.planned.units);
-        [0, 1, 2, 3].map(|n: usize| {
-            let held = state.registers[unit][n];
-            if doubled[n] { held.floor_divided(2).low_bits(255) } else { held.low_bits(255) }
-        })
+        let of = |n: usize| if live >> n & 1 == 0 { Number::ZERO } else { self.whole.passed(index, n, sample) };
+        [0, 1, 2, 3].map(of)
     }
 
     /// TSH-1 to TSH-4: returns the dot product of a stage.
@@ -184,17 +150,7 @@ impl<'a> Stages<'a, '_, '_> {
             return dot;
         }
         let ShaderStage { previous, mapping, .. } = self.shader.stages[index].state;
-        let coordinates = [0, 1, 2].map(|n| self.rounded(index, n, sample));
-        self.whole.code.by("TSH-1");
-        let fractions = dot::fractions(mapping, self.bytes(previous, state));
-        let vector = fractions.map(|(numerator, denominator)| {
-            Single::called(
-                Helper::SingleQuotient,
-                numerator.within(-(1 << 16), 1 << 16),
-                denominator.within(1, 1 << 30),
-            )
-        });
-        let dot = dot::dot(coordinates, vector);
+        let dot = self.whole.dot(index, mapping, self.bytes(previous, state), sample);
         self.whole.code.name(dot.0.operand(), || format!("dot{index}"));
         state.dots[index] = Some(dot);
         dot
@@ -216,7 +172,7 @@ impl<'a> Stages<'a, '_, '_> {
                 let normal = self.normal(sample, state);
                 let eye = match operation {
                     ShaderOperation::DotReflectConstantEye { eye } => eye.map(Single::constant),
-                    _ => [1, 2, 3].map(|index| self.rounded(index, 3, sample)),
+                    _ => [1, 2, 3].map(|index| self.whole.rounded(index, 3, sample)),
                 };
                 let is_unit = self.shader.stages[index].unit_normals;
                 let square = if is_unit { Single::constant(1.0) } else { dot::dot(normal, normal) };
@@ -229,11 +185,8 @@ impl<'a> Stages<'a, '_, '_> {
             }
             ShaderOperation::BumpEnvironment { matrix: [m0, m1, m2, m3], .. } => {
                 let [_, green, blue, _] = self.bytes(previous, state);
-                let one = Number::Constant(1);
-                let signed =
-                    [blue, green].map(|byte| Single::called(Helper::SingleQuotient, dot::signed(byte, 8), one));
-                let entries = [[m0, m3], [m1, m2]];
-                Place::Moved(entries.map(|entries| dot::moved(entries.map(Single::constant), signed).0))
+                let entries = [[m0, m3], [m1, m2]].map(|entries| entries.map(Single::constant));
+                Place::Moved(moved(entries, [blue, green]))
             }
             // DotProductCube and DotReflectDiffuse.
             _ => {
@@ -262,9 +215,80 @@ impl<'a> Stages<'a, '_, '_> {
             if n == 3 && !planned.lights_alpha || planned.live >> n & 1 == 0 {
                 return color[n];
             }
-            let v = counted(code, Helper::Luminance, &[color[n].operand(), red.operand(), scale, offset]);
-            code.by("TSH-8");
-            shader::luminance_byte(v).within(0, 255)
+            lit(code, color[n], red, [scale, offset])
         })
     }
+}
+
+impl<'a> Interpolator<'a> {
+    /// Returns a component of a stage's coordinates.
+    fn component(&self, index: usize, n: usize, sample: &Sample<'a>) -> Called<'a> {
+        self.code.by("WGT-1");
+        self.linear(|part| Field::Coordinate(index, n, part)).at(sample.b)
+    }
+
+    /// Returns it in single precision.
+    pub(crate) fn rounded(&self, index: usize, n: usize, sample: &Sample<'a>) -> Single<'a> {
+        Single(counted(self.code, Helper::Rounded, &[self.component(index, n, sample).operand(self.code)]))
+    }
+
+    fn parts(&self, index: usize, n: usize, sample: &Sample<'a>) -> Binary<Number<'a>> {
+        self.component(index, n, sample).parts(self.code, (-(1 << 26), 1 << 26))
+    }
+
+    /// TSH-9: returns a coordinate, limited, as a byte.
+    pub(crate) fn passed(&self, index: usize, n: usize, sample: &Sample<'a>) -> Number<'a> {
+        let parts = self.parts(index, n, sample);
+        self.code.by("TSH-9");
+        convert::factor(fog::factor(parts)).within(0, 255)
+    }
+
+    /// TSH-10: returns whether a coordinate has the sign that is dropped.
+    pub(crate) fn drops(&self, index: usize, not_negative: [Truth<'a>; 4], sample: &Sample<'a>) -> Truth<'a> {
+        let drops = |n: usize| {
+            let parts = self.parts(index, n, sample);
+            self.code.by("TSH-10");
+            parts.mantissa.is_negative() ^ not_negative[n]
+        };
+        (0..4).map(drops).fold(Truth::Known(false), |any, one| any | one)
+    }
+
+    /// TSH-1 to TSH-4: returns the dot product of a stage's coordinates and a colour.
+    pub(crate) fn dot(
+        &self,
+        index: usize,
+        mapping: DotMapping,
+        bytes: [Number<'a>; 4],
+        sample: &Sample<'a>,
+    ) -> Single<'a> {
+        let coordinates = [0, 1, 2].map(|n| self.rounded(index, n, sample));
+        self.code.by("TSH-1");
+        let vector = dot::fractions(mapping, bytes).map(|(numerator, denominator)| {
+            Single::called(
+                Helper::SingleQuotient,
+                numerator.within(-(1 << 16), 1 << 16),
+                denominator.within(1, 1 << 30),
+            )
+        });
+        dot::dot(coordinates, vector)
+    }
+}
+
+/// TSH-1: returns the byte of a register, which may hold it doubled.
+pub(crate) fn byte<'a>(held: Number<'a>, is_doubled: Truth<'a>) -> Number<'a> {
+    held.floor_divided(2).low_bits(255).or(is_doubled, held.low_bits(255))
+}
+
+/// TSH-7: returns the displacements by two rows of the matrix and by blue and green, patterns of binary32.
+pub(crate) fn moved<'a>(entries: [[Single<'a>; 2]; 2], blue_green: [Number<'a>; 2]) -> [Number<'a>; 2] {
+    let one = Number::Constant(1);
+    let signed = blue_green.map(|byte| Single::called(Helper::SingleQuotient, dot::signed(byte, 8), one));
+    entries.map(|entries| dot::moved(entries, signed).0)
+}
+
+/// TSH-8: returns a channel of a texel that is multiplied by the luminance.
+pub(crate) fn lit<'a>(code: &'a Code, channel: Number<'a>, red: Number<'a>, line: [Operand; 2]) -> Number<'a> {
+    let v = counted(code, Helper::Luminance, &[channel.operand(), red.operand(), line[0], line[1]]);
+    code.by("TSH-8");
+    shader::luminance_byte(v).within(0, 255)
 }

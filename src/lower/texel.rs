@@ -128,7 +128,11 @@ impl<'u> Sampler<'u> {
     /// Returns the register that lanes become.
     pub(crate) fn loaded<'a>(&self, lanes: [Number<'a>; 4], code: &'a Code) -> [Number<'a>; 4] {
         let n = self.unit.index;
-        let register = if self.unit.is_wide() { self.bytes(lanes, code) } else { self.doubled(lanes, code) };
+        let register = if self.unit.is_wide() {
+            self.bytes(lanes, [0, 1].map(|lane| Truth::Known(self.unit.signed_lane(lane))), code)
+        } else {
+            self.doubled(lanes, self.unit.state.signed.map(Truth::Known), code)
+        };
         for (channel, name) in ["r", "g", "b", "a"].into_iter().enumerate() {
             code.name(register[channel].operand(), || format!("texture{n}_{name}"));
         }
@@ -138,13 +142,24 @@ impl<'u> Sampler<'u> {
     /// Applies the colour key, if the unit has one (KEY-1). Returns whether it drops the fragment.
     fn keyed<'a>(&self, lanes: [Number<'a>; 4], code: &'a Code) -> ([Number<'a>; 4], Truth<'a>) {
         let Some(key) = &self.unit.state.color_key else { return (lanes, Truth::Known(false)) };
+        let wanted = color_key::as_lanes(self.unit, key).map(|lane| Number::Constant(lane.into()));
+        self.keyed_by(key.mode, wanted, lanes, code)
+    }
+
+    /// KEY-1: applies a key whose colour has these lanes.
+    pub(crate) fn keyed_by<'a>(
+        &self,
+        mode: ColorKeyMode,
+        wanted: [Number<'a>; 4],
+        lanes: [Number<'a>; 4],
+        code: &'a Code,
+    ) -> ([Number<'a>; 4], Truth<'a>) {
         code.by("KEY-1");
-        let wanted = color_key::as_lanes(self.unit, key);
-        let equal = |n: usize| Integer::compared(lanes[n], CompareFunction::Equal, Number::Constant(wanted[n].into()));
+        let equal = |n: usize| Integer::compared(lanes[n], CompareFunction::Equal, wanted[n]);
         let matched = (0..color_key::compared(self.unit)).map(equal).fold(Truth::Known(true), |all, one| all & one);
-        let cleared = color_key::cleared(key.mode);
+        let cleared = color_key::cleared(mode);
         let lanes = [0, 1, 2, 3].map(|n: usize| if cleared[n] { Number::ZERO.or(matched, lanes[n]) } else { lanes[n] });
-        (lanes, if key.mode == ColorKeyMode::Texel { matched } else { Truth::Known(false) })
+        (lanes, if mode == ColorKeyMode::Texel { matched } else { Truth::Known(false) })
     }
 
     /// Returns the lanes of a texel: its channels, or its halves.
@@ -155,23 +170,9 @@ impl<'u> Sampler<'u> {
         border: [Number<'a>; 4],
         code: &'a Code,
     ) -> [Number<'a>; 4] {
-        code.by("TEX-1");
-        let half = |high: Number<'a>, low: Number<'a>| high.multiplied(Number::Constant(256)) + low;
-        let (inside, border): ([Number<'a>; 4], [Number<'a>; 4]) = if self.unit.is_wide() {
-            let low = (word & Word::from(0xffff)).number();
-            let high = match self.unit.format {
-                TextureFormat::Y16 => Number::Constant(0xffff),
-                _ => (word >> 16).number(),
-            };
-            let [r, g, b, a] = border;
-            ([high, low, Number::ZERO, Number::ZERO], [half(a, r), half(g, b), Number::ZERO, Number::ZERO])
-        } else {
-            (format::channels(self.words(), word).map(Word::number), border)
-        };
-        let bits = if self.unit.is_wide() { 16 } else { 8 };
+        let (inside, border) = (self.inside(word, code), self.beyond(border));
         [0, 1, 2, 3].map(|lane: usize| {
-            let is_signed = self.unit.signed_lane(lane);
-            let read = |value: Number<'a>| if is_signed { value.signed(bits) } else { value };
+            let read = |value: Number<'a>| self.read(value, Truth::Known(self.unit.signed_lane(lane)));
             let value = read(inside[lane]);
             if self.border.is_none() {
                 return value;
@@ -181,24 +182,56 @@ impl<'u> Sampler<'u> {
         })
     }
 
+    /// TEX-1: returns the lanes of a word, which are not yet signed.
+    pub(crate) fn inside<'a>(&self, word: Word<'a>, code: &'a Code) -> [Number<'a>; 4] {
+        code.by("TEX-1");
+        if !self.unit.is_wide() {
+            return format::channels(self.words(), word).map(Word::number);
+        }
+        let low = (word & Word::from(0xffff)).number();
+        let high = match self.unit.format {
+            TextureFormat::Y16 => Number::Constant(0xffff),
+            _ => (word >> 16).number(),
+        };
+        [high, low, Number::ZERO, Number::ZERO]
+    }
+
+    /// Returns the lanes of the border colour, which are not yet signed.
+    pub(crate) fn beyond<'a>(&self, border: [Number<'a>; 4]) -> [Number<'a>; 4] {
+        let half = |high: Number<'a>, low: Number<'a>| high.multiplied(Number::Constant(256)) + low;
+        let [r, g, b, a] = border;
+        if self.unit.is_wide() { [half(a, r), half(g, b), Number::ZERO, Number::ZERO] } else { border }
+    }
+
+    /// Returns a lane, which may be two's complement.
+    pub(crate) fn read<'a>(&self, lane: Number<'a>, is_signed: Truth<'a>) -> Number<'a> {
+        let bits = if self.unit.is_wide() { 16 } else { 8 };
+        lane.signed(bits).or(is_signed, lane)
+    }
+
     /// Doubles signed channels.
-    fn doubled<'a>(&self, lanes: [Number<'a>; 4], code: &'a Code) -> [Number<'a>; 4] {
+    pub(crate) fn doubled<'a>(
+        &self,
+        lanes: [Number<'a>; 4],
+        signed: [Truth<'a>; 4],
+        code: &'a Code,
+    ) -> [Number<'a>; 4] {
         code.by("TEX-18");
-        let two = Number::Constant(2);
-        [0, 1, 2, 3].map(|n: usize| if self.unit.state.signed[n] { lanes[n].multiplied(two) } else { lanes[n] })
+        [0, 1, 2, 3].map(|n: usize| lanes[n].multiplied(Number::Constant(2)).or(signed[n], lanes[n]))
     }
 
     /// Returns the bytes of two halves. The high byte of a signed half is doubled.
-    fn bytes<'a>(&self, [high, low, ..]: [Number<'a>; 4], code: &'a Code) -> [Number<'a>; 4] {
-        code.by("TEX-1");
+    pub(crate) fn bytes<'a>(
+        &self,
+        [high, low, ..]: [Number<'a>; 4],
+        signed: [Truth<'a>; 2],
+        code: &'a Code,
+    ) -> [Number<'a>; 4] {
         let upper = |half: Number<'a>, lane: usize| {
+            code.by("TEX-1");
             let byte = half.floor_divided(256);
-            if self.unit.signed_lane(lane) {
-                code.by("TEX-18");
-                byte.multiplied(Number::Constant(2))
-            } else {
-                byte
-            }
+            code.by("TEX-18");
+            byte.multiplied(Number::Constant(2)).or(signed[lane], byte)
         };
         [high.low_bits(255), upper(low, 1), low.low_bits(255), upper(high, 0)]
     }

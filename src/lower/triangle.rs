@@ -1,6 +1,20 @@
 //! Constants of a triangle, and what they are made of.
 
+use ninebit::state::TEXTURE_UNITS;
+
 use crate::kind::{ANY_BINARY, Kind, Range, is_wide, unpacked};
+
+/// Number of the unit that a printed function has as a parameter.
+pub(crate) const ANY_UNIT: usize = TEXTURE_UNITS;
+
+fn index_of(unit: usize) -> String {
+    if unit == ANY_UNIT { "unit".to_string() } else { unit.to_string() }
+}
+
+/// Returns the name of a unit's value.
+pub(crate) fn name_of(unit: usize, value: &str) -> String {
+    if unit == ANY_UNIT { value.to_string() } else { format!("unit{unit}_{value}") }
+}
 
 /// A part of a number of the vertices, as [`Linear`](ninebit::raster::weights::Linear) has it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -91,7 +105,9 @@ impl Field {
             Field::Owns(k) => format!("owns[{k}]"),
             Field::Ratio(k) => format!("ratio[{k}]"),
             Field::Color(set, channel, k) => format!("color[{set}][{channel}][{k}]"),
-            Field::Coordinate(unit, component, part) => format!("coordinate[{unit}][{component}][{}]", part as usize),
+            Field::Coordinate(unit, component, part) => {
+                format!("coordinate[{}][{component}][{}]", index_of(unit), part as usize)
+            }
             Field::Fog(part) => format!("fog[{}]", part as usize),
             Field::DepthRatio(k) => format!("depth_ratio[{k}]"),
             Field::Sprite(axis) => format!("sprite[{axis}]"),
@@ -150,7 +166,7 @@ impl Attribute {
             Attribute::Z => "z".to_string(),
             Attribute::W => "w".to_string(),
             Attribute::Color(set, channel) => format!("color[{set}][{channel}]"),
-            Attribute::Coordinate(unit, component) => format!("coordinate[{unit}][{component}]"),
+            Attribute::Coordinate(unit, component) => format!("coordinate[{}][{component}]", index_of(unit)),
             Attribute::Fog => "fog".to_string(),
         }
     }

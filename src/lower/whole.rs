@@ -1,5 +1,7 @@
 //! Makes the code of what a draw interpolates and tests.
 
+use std::ops::Deref;
+
 use ninebit::number::convert;
 use ninebit::number::{Integer, Register as _};
 use ninebit::plan::PlannedDraw;
@@ -11,9 +13,9 @@ use ninebit::raster::{depth, interpolate};
 use ninebit::rop::stencil;
 use ninebit::state::*;
 
-use crate::binary::Called;
-use crate::code::Code;
-use crate::helper::Sign;
+use crate::binary::{Called, counted};
+use crate::code::{Code, Operand};
+use crate::helper::{Helper, Sign};
 use crate::input::Input;
 use crate::number::{Number, Word};
 use crate::triangle::{Field, Part};
@@ -28,15 +30,28 @@ pub(crate) struct Sample<'a> {
     pub(crate) sum: Called<'a>,
 }
 
-/// What reads the rules of one draw.
-pub(crate) struct Whole<'a, 's> {
+/// What reads the rules of the interpolator.
+#[derive(Clone, Copy)]
+pub(crate) struct Interpolator<'a> {
     pub(crate) code: &'a Code,
-    pub(crate) planned: &'s PlannedDraw,
     /// Whether w of the vertices count.
     pub(crate) perspective: bool,
 }
 
-impl<'a> Whole<'a, '_> {
+/// What reads the rules of one draw.
+pub(crate) struct Whole<'a, 's> {
+    pub(crate) interpolator: Interpolator<'a>,
+    pub(crate) planned: &'s PlannedDraw,
+}
+
+impl<'a> Deref for Whole<'a, '_> {
+    type Target = Interpolator<'a>;
+    fn deref(&self) -> &Interpolator<'a> {
+        &self.interpolator
+    }
+}
+
+impl<'a> Interpolator<'a> {
     pub(crate) fn input(&self, input: Input) -> Number<'a> {
         Number::new(self.code, self.code.input(input, input.range()))
     }
@@ -84,6 +99,17 @@ impl<'a> Whole<'a, '_> {
         self.sample::<false>(self.edges(x, y, false))
     }
 
+    /// INT-2: returns W0 and W2.
+    pub(crate) fn color_weights(&self, sample: &Sample<'a>) -> [Number<'a>; 2] {
+        [(0, "W0"), (2, "W2")].map(|(k, name): (usize, &str)| {
+            let limit = [1, 8, 256].map(Operand::Constant);
+            let b = sample.b[k].operand(self.code);
+            let weight = counted(self.code, Helper::Floor, &[b, limit[0], limit[1], limit[2]]).within(0, 256);
+            self.code.name(weight.operand(), || name.to_string());
+            weight
+        })
+    }
+
     /// INT-2: returns the primary or the secondary colour.
     pub(crate) fn color(&self, set: usize, [w0, w2]: [Number<'a>; 2]) -> [Number<'a>; 4] {
         self.code.by("INT-2");
@@ -96,45 +122,42 @@ impl<'a> Whole<'a, '_> {
         })
     }
 
-    /// Returns the fog factor as a byte.
-    pub(crate) fn fog(&self, b: [Called<'a>; 3]) -> Number<'a> {
-        let fog = &self.planned.fog;
-        if !fog.enabled {
-            // CMB-13: without fog the factor is 1.
-            return Number::ONE;
-        }
-        let value = || self.linear(Field::Fog).at(b);
+    /// Returns the fog factor as a byte, by a mode and the parameters of its line, or of the vertices' own factors.
+    pub(crate) fn fog_by(
+        &self,
+        mode: Option<FogMode>,
+        line: [Binary<Number<'a>>; 2],
+        b: [Called<'a>; 3],
+    ) -> Number<'a> {
+        let value = self.linear(Field::Fog).at(b);
         let parts = |value: Called<'a>| value.parts(self.code, (-(1 << 26), 1 << 26));
-        let byte = match fog.function.as_ref().map(|function| (function, Curve::new(function))) {
+        let byte = match mode {
             None => {
+                let value = parts(value);
                 self.code.by("NUM-6");
-                convert::factor(fog::factor(parts(value())))
+                convert::factor(fog::factor(value))
             }
-            Some((_, Some(Curve::Line(line)))) => {
-                let coordinate = parts(value().cut());
+            Some(mode) if mode.is_linear() => {
+                let coordinate = parts(value.cut());
                 self.code.by("FOG-2");
-                convert::factor(line.at(coordinate))
+                convert::factor(fog::on_line(coordinate, mode == FogMode::LinearAbs, line))
             }
-            Some((_, Some(Curve::Table(mode)))) => {
-                let value = parts(value());
+            Some(mode) => {
+                let value = parts(value);
                 self.code.by("FOG-4");
                 fog::tabled(mode, fog::steps(value))
             }
-            Some((function, None)) => return Number::Constant(fog::not_finite(function.mode).into()),
         };
         let byte = byte.within(0, 255);
         self.code.name(byte.operand(), || "fog_a".to_string());
-        if fog.function.is_none() || self.is_fog_finite() {
-            return byte;
-        }
+        byte
+    }
+
+    /// FOG-5: returns the byte of a triangle with a coordinate that is not finite, or else that of the pixel.
+    pub(crate) fn fog_or_fixed(&self, byte: Number<'a>) -> Number<'a> {
         self.code.by("FOG-5");
         let fixed = self.input(Input::Triangle(Field::FogByte));
         byte.or(fixed.is_negative(), fixed).within(0, 255)
-    }
-
-    fn is_fog_finite(&self) -> bool {
-        let assembly = &self.planned.assembly;
-        (0..assembly.triangles.len()).all(|n| assembly.triangle(n).fog().iter().all(|fog| fog.is_finite()))
     }
 
     /// DEP-1: returns the depth between those of the vertices.
@@ -157,17 +180,77 @@ impl<'a> Whole<'a, '_> {
         depth::w_depth(edges, ratios, w, |a, b| Called::cut_rest(self.code, a, b))
     }
 
+    /// DEP-1, DEP-6: returns the depth between those of the vertices, or w.
+    pub(crate) fn depth_between(&self, w_buffer: bool, e: [Number<'a>; 3]) -> Binary<Number<'a>> {
+        let edges = e.map(|e| Called::whole(self.code, e));
+        let value = if w_buffer { self.w_depth(edges) } else { self.z_depth(edges, e) };
+        value.parts(self.code, (-(1 << 31) + 1, (1 << 31) - 1))
+    }
+
+    /// DEP-5: returns a depth with the triangle's offset.
+    pub(crate) fn depth_moved(&self, value: Binary<Number<'a>>) -> Binary<Number<'a>> {
+        self.code.by("DEP-5");
+        let [mantissa, exponent] =
+            [Field::Offset, Field::OffsetExponent].map(|field| self.input(Input::Triangle(field)));
+        value.or(mantissa.is_zero(), depth::moved(value, Binary { mantissa, exponent }))
+    }
+}
+
+/// What the tests of a pixel yield.
+pub(crate) struct Outcome<'a> {
+    pub(crate) kept: Truth<'a>,
+    pub(crate) stencil_passed: Truth<'a>,
+    pub(crate) depth_passed: Truth<'a>,
+    /// The stencils that are stored if the stencil test fails, the depth test fails, or both pass.
+    pub(crate) stencils: [Number<'a>; 3],
+    pub(crate) held_stencil: Number<'a>,
+    /// The depth that is stored if both tests pass.
+    pub(crate) depth: Number<'a>,
+    pub(crate) held_depth: Number<'a>,
+}
+
+impl<'a> Outcome<'a> {
+    /// STN-1, DEP-2: returns whether the fragment is stored, and the new depth and stencil.
+    pub(crate) fn settled(self) -> (Truth<'a>, [Number<'a>; 2]) {
+        let (kept, stencil_passed, depth_passed) = (self.kept, self.stencil_passed, self.depth_passed);
+        let stored = kept & stencil_passed & depth_passed;
+        let [fail, depth_fail, pass] = self.stencils;
+        let stencil = pass.or(depth_passed, depth_fail).or(stencil_passed, fail).or(kept, self.held_stencil);
+        (stored, [self.depth.or(stored, self.held_depth), stencil])
+    }
+}
+
+impl<'a> Whole<'a, '_> {
+    /// Returns the fog factor as a byte.
+    pub(crate) fn fog(&self, b: [Called<'a>; 3]) -> Number<'a> {
+        let fog = &self.planned.fog;
+        if !fog.enabled {
+            // CMB-13: without fog the factor is 1.
+            return Number::ONE;
+        }
+        let mut line = [0.0; 2];
+        if let Some(function) = &fog.function {
+            match Curve::new(function) {
+                Some(Curve::Line(of)) => line = [of.p0, of.p1],
+                Some(Curve::Table(_)) => {}
+                None => return Number::Constant(fog::not_finite(function.mode).into()),
+            }
+        }
+        let mode = fog.function.map(|function| function.mode);
+        let byte = self.fog_by(mode, line.map(weights::Number::from_f32), b);
+        if mode.is_none() || self.is_fog_finite() { byte } else { self.fog_or_fixed(byte) }
+    }
+
+    fn is_fog_finite(&self) -> bool {
+        let assembly = &self.planned.assembly;
+        (0..assembly.triangles.len()).all(|n| assembly.triangle(n).fog().iter().all(|fog| fog.is_finite()))
+    }
+
     /// DEP-1, DEP-3 to DEP-6: returns the depth word, and whether the depth is outside its range.
     fn depth(&self, test: &DepthTest, e: [Number<'a>; 3]) -> (Number<'a>, Truth<'a>) {
-        let edges = e.map(|e| Called::whole(self.code, e));
-        let value = if test.w_buffer { self.w_depth(edges) } else { self.z_depth(edges, e) };
-        let mut value = value.parts(self.code, (-(1 << 31) + 1, (1 << 31) - 1));
+        let mut value = self.depth_between(test.w_buffer, e);
         if test.offset != (PolygonOffset { bias: 0.0, factor: 0.0 }) {
-            self.code.by("DEP-5");
-            let [mantissa, exponent] =
-                [Field::Offset, Field::OffsetExponent].map(|field| self.input(Input::Triangle(field)));
-            let moved = depth::moved(value, Binary { mantissa, exponent });
-            value = value.or(mantissa.is_zero(), moved);
+            value = self.depth_moved(value);
         }
         let mut outside = Truth::Known(false);
         if let Some(range) = &test.range {
@@ -189,12 +272,12 @@ impl<'a> Whole<'a, '_> {
         }
         let held = Word(self.input(Input::Depth));
         let (held_depth, held_stencil) = ((held & Word::from(0x00ff_ffff)).number(), (held >> 24).number());
-        let (mut kept, mut new_depth, mut new_stencil) = (kept, held_depth, held_stencil);
+        let mut kept = kept;
         let stencil_passed = draw.stencil_test.map_or(Truth::Known(true), |test| {
             self.code.by("STN-1");
             stencil::compared(&test, held_stencil)
         });
-        let mut depth_passed = Truth::Known(true);
+        let (mut depth_passed, mut depth) = (Truth::Known(true), held_depth);
         if let Some(test) = &draw.depth_test {
             let (word, outside) = self.depth(test, e);
             if test.drops_by_range() {
@@ -203,16 +286,16 @@ impl<'a> Whole<'a, '_> {
             self.code.by("DEP-2");
             depth_passed = Integer::compared(word, test.function, held_depth);
             if test.write {
-                new_depth = word.or(kept & stencil_passed & depth_passed, held_depth);
+                depth = word;
             }
         }
-        if let Some(test) = &draw.stencil_test {
+        let stencils = draw.stencil_test.map_or([held_stencil; 3], |test| {
             self.code.by("STN-1");
-            let written = |operation| stencil::replaced(test, operation, held_stencil);
-            let after_depth = written(test.pass).or(depth_passed, written(test.depth_fail));
-            new_stencil = after_depth.or(stencil_passed, written(test.fail)).or(kept, held_stencil);
-        }
-        let is_held = new_depth.operand() == held_depth.operand() && new_stencil.operand() == held_stencil.operand();
-        (kept & stencil_passed & depth_passed, (!is_held).then_some([new_depth, new_stencil]))
+            [test.fail, test.depth_fail, test.pass].map(|operation| stencil::replaced(&test, operation, held_stencil))
+        });
+        let outcome = Outcome { kept, stencil_passed, depth_passed, stencils, held_stencil, depth, held_depth };
+        let (stored, new) = outcome.settled();
+        let is_held = new[0].operand() == held_depth.operand() && new[1].operand() == held_stencil.operand();
+        (stored, (!is_held).then_some(new))
     }
 }

@@ -93,7 +93,12 @@ pub fn ranged(range: Option<&DepthRange>, depth: Binary) -> Option<Binary> {
 /// DEP-4: limits a depth to a range, and returns whether it was outside.
 #[inline]
 pub fn limited<I: Integer>(range: &DepthRange, depth: Binary<I>) -> (Binary<I>, I::Choice) {
-    let [lowest, highest] = [range.lowest, range.highest].map(Binary::<I>::from_f32);
+    limited_to([range.lowest, range.highest].map(Binary::<I>::from_f32), depth)
+}
+
+/// DEP-4: returns [`limited`] of a range that goes from the lowest to the highest depth.
+#[inline]
+pub fn limited_to<I: Integer>([lowest, highest]: [Binary<I>; 2], depth: Binary<I>) -> (Binary<I>, I::Choice) {
     let (below, above) = (depth.is_below(lowest), highest.is_below(depth));
     (lowest.or(below, highest.or(above, depth)), below | above)
 }

@@ -194,13 +194,18 @@ impl Line {
     /// FOG-2: returns the factor v, 0..=4096, at a coordinate of 24 bits. p0 and p1 must be finite.
     #[inline]
     pub fn at<I: Integer>(&self, coordinate: Binary<I>) -> I {
-        let d = if self.absolute { coordinate.mantissa.magnitude() } else { coordinate.mantissa };
-        let [p0, p1] = [self.p0, self.p1].map(Binary::<I>::from_f32);
-        // An exact product of 48 bits.
-        let product = Binary { mantissa: d, ..coordinate }.times(p1);
-        let sum = p0.floored_sum(product, I::new(1), I::new(FACTOR_BITS), I::new(FARTHEST));
-        (sum - I::new(1 << FACTOR_BITS)).limited(0, 1 << FACTOR_BITS)
+        on_line(coordinate, self.absolute, [self.p0, self.p1].map(Binary::<I>::from_f32))
     }
+}
+
+/// FOG-2: returns [`Line::at`] of a line with the parameters p0 and p1.
+#[inline(always)]
+pub fn on_line<I: Integer>(coordinate: Binary<I>, absolute: bool, [p0, p1]: [Binary<I>; 2]) -> I {
+    let d = if absolute { coordinate.mantissa.magnitude() } else { coordinate.mantissa };
+    // An exact product of 48 bits.
+    let product = Binary { mantissa: d, ..coordinate }.times(p1);
+    let sum = p0.floored_sum(product, I::new(1), I::new(FACTOR_BITS), I::new(FARTHEST));
+    (sum - I::new(1 << FACTOR_BITS)).limited(0, 1 << FACTOR_BITS)
 }
 
 #[cfg(test)]

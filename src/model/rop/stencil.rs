@@ -34,18 +34,24 @@ pub fn written(test: &StencilTest, operation: StencilOperation, stored: u8) -> u
 /// [`written`] of any whole number.
 #[inline(always)]
 pub fn replaced<I: Integer>(test: &StencilTest, operation: StencilOperation, stored: I) -> I {
+    let new = operated(operation, I::new(test.reference.into()), stored);
+    stored.masked((!test.write_mask).into()) + new.masked(test.write_mask.into())
+}
+
+/// Returns the stencil byte that an operation makes of a stored one, before a mask selects bits.
+#[inline(always)]
+pub fn operated<I: Integer>(operation: StencilOperation, reference: I, stored: I) -> I {
     let of = |n: i64| I::new(n);
-    let new = match operation {
+    match operation {
         StencilOperation::Keep => stored,
         StencilOperation::Zero => of(0),
-        StencilOperation::Replace => of(test.reference.into()),
+        StencilOperation::Replace => reference,
         StencilOperation::IncrementSaturate => (stored + of(1)).least(of(255)),
         StencilOperation::DecrementSaturate => (stored - of(1)).greatest(of(0)),
         StencilOperation::Invert => of(255) - stored,
         StencilOperation::Increment => (stored + of(1)).masked(255),
         StencilOperation::Decrement => (stored + of(255)).masked(255),
-    };
-    stored.masked((!test.write_mask).into()) + new.masked(test.write_mask.into())
+    }
 }
 
 /// Returns whether the test can change a stored byte.

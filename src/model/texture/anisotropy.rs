@@ -28,7 +28,8 @@ impl Taps<i64, i32> {
 /// Returns the taps of a quad's footprint, whose longer side counts as at most `limit` times the shorter one. Without a
 /// quad, because one of its pixels lies behind the viewer, there is one tap.
 pub fn taps(quad: Option<Quad>, limit: u32) -> Taps<i64, i32> {
-    let Pairs { count: count @ 1.., offsets, weights } = quad.map_or(Pairs::SINGLE, |quad| pairs(quad, limit)) else {
+    let Pairs { count: count @ 1.., offsets, weights } = quad.map_or(Pairs::SINGLE, |quad| pairs(quad, limit.into()))
+    else {
         return Taps::ONE;
     };
     let mut taps = Taps { count: 2 * count as usize, weights: [0; MAX_TAPS], ..Taps::ONE };
@@ -62,8 +63,8 @@ impl Pairs<i64> {
 /// Longer steps between pixels count as this: 2^13 texels.
 const LONGEST_STEP: i64 = 1 << 29;
 
-/// TEX-17: returns the pairs of taps of a quad.
-pub fn pairs<I: Integer>([origin, right, lower]: [[I; 2]; 3], limit: u32) -> Pairs<I> {
+/// TEX-17: returns the pairs of taps of a quad. `limit` is 2 or more.
+pub fn pairs<I: Integer>([origin, right, lower]: [[I; 2]; 3], limit: I) -> Pairs<I> {
     let (zero, one) = (I::new(0), I::new(1));
     let along = |to: [I; 2]| [0, 1].map(|n: usize| (to[n] - origin[n]).limited(-LONGEST_STEP, LONGEST_STEP));
     let (x, y) = (along(right), along(lower));
@@ -72,9 +73,9 @@ pub fn pairs<I: Integer>([origin, right, lower]: [[I; 2]; 3], limit: u32) -> Pai
     let axis = [0, 1].map(|n: usize| y[n].or(is_y, x[n]));
     let (long, short) = (of_y.or(is_y, of_x).greatest(one), of_x.or(is_y, of_y));
     let over = |n: I, by: I| (n + by - one).quotient(by);
-    let width = short.greatest(over(long, I::new(limit.into()))).greatest(I::new(TEXEL.into()));
+    let width = short.greatest(over(long, limit)).greatest(I::new(TEXEL.into()));
     let is_single = !width.is_below(long);
-    let count = over(long, width.up(one)).limited(1, i64::from(limit) / 2);
+    let count = over(long, width.up(one)).least(limit.down(one)).greatest(one);
     // Half the distance between two taps is `step` / (2 `long`) of the axis.
     let step = (long - width).or(count.is_below(I::new(2)), width).greatest(zero);
     // Rounded to nearest. The limit keeps the weight of the outermost two from being negative.

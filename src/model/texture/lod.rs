@@ -150,46 +150,50 @@ pub(crate) fn levels(unit: &PlannedUnit, lod: i32) -> (i32, i32, i32) {
 /// The state of a unit that selects levels, in numbers, because a loop over lanes with comparisons or branches by
 /// filters would not be vectorised.
 #[derive(Clone, Copy, Debug)]
-pub struct Selection {
-    bias: i32,
-    min_lod: i32,
-    max_lod: i32,
+pub struct Selection<I = i32> {
+    bias: I,
+    min_lod: I,
+    max_lod: I,
     /// The index of the last level.
-    last: i32,
+    last: I,
     /// Number that is added to a lod before its fraction is dropped.
-    rounding: i32,
+    rounding: i64,
     /// Distance of the second level from the first.
-    step: i32,
+    step: i64,
     /// Mask of the bits of a lod that are the weight.
-    fraction: i32,
+    fraction: i64,
 }
 
 impl Selection {
     /// Returns the numbers of a unit.
     pub fn from_unit(unit: &PlannedUnit) -> Selection {
-        let (state, last) = (&unit.state, unit.levels.len() as i32 - 1);
-        let (last, rounding, step, fraction) = match state.mip_filter {
-            MipFilter::None => (0, 0, 0, 0),
+        let state = &unit.state;
+        Selection::new(state.mip_filter, unit.levels.len() as i32 - 1, [state.lod_bias, state.min_lod, state.max_lod])
+    }
+}
+
+impl<I: Integer> Selection<I> {
+    /// Returns the numbers of a unit whose last level is `last`, with its bias, least and largest lod.
+    pub fn new(filter: MipFilter, last: I, [bias, min_lod, max_lod]: [I; 3]) -> Selection<I> {
+        let (last, rounding, step, fraction) = match filter {
+            MipFilter::None => (I::new(0), 0, 0, 0),
             MipFilter::Nearest => (last, 128, 0, 0),
             MipFilter::Linear => (last, 0, 1, 255),
         };
-        let (bias, min_lod, max_lod) = (state.lod_bias, state.min_lod, state.max_lod);
         Selection { bias, min_lod, max_lod, last, rounding, step, fraction }
     }
 
     /// Like [`biased`], for a unit whose state is set up.
     #[inline(always)]
-    pub fn biased<I: Integer>(self, log2_ratio: I) -> I {
-        let of = |n: i32| I::new(n.into());
-        (log2_ratio + of(self.bias)).greatest(of(self.min_lod)).least(of(self.max_lod))
+    pub fn biased(self, log2_ratio: I) -> I {
+        (log2_ratio + self.bias).greatest(self.min_lod).least(self.max_lod)
     }
 
     /// Like `levels`, for a unit whose state is set up.
     #[inline(always)]
-    pub fn levels<I: Integer>(self, lod: I) -> (I, I, I) {
-        let of = |n: i32| I::new(n.into());
-        let level = (lod + of(self.rounding)).down(I::new(8));
-        (level.least(of(self.last)), (level + of(self.step)).least(of(self.last)), lod.masked(self.fraction.into()))
+    pub fn levels(self, lod: I) -> (I, I, I) {
+        let level = (lod + I::new(self.rounding)).down(I::new(8));
+        (level.least(self.last), (level + I::new(self.step)).least(self.last), lod.masked(self.fraction))
     }
 }
 

@@ -16,7 +16,7 @@ pub(crate) struct PairsOfQuad {
 impl PairsOfQuad {
     /// Returns the definition's pairs.
     pub(crate) fn new(quad: Option<Quad>, limit: u32) -> PairsOfQuad {
-        let pairs = quad.map_or(anisotropy::Pairs::SINGLE, |quad| anisotropy::pairs(quad, limit));
+        let pairs = quad.map_or(anisotropy::Pairs::SINGLE, |quad| anisotropy::pairs(quad, limit.into()));
         let offsets = pairs.offsets.map(|offset| offset.map(|n| n as i32));
         PairsOfQuad { offsets, weights: pairs.weights.map(|weight| weight as i32) }
     }
