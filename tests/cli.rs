@@ -204,6 +204,10 @@ fn programs_are_printed_as_functions() {
     assert!(whole.starts_with(&header) && whole.ends_with(source.split_once("h\"\n").unwrap().1), "{whole}");
     assert!(bench.run("lower --generic --to glsl --profile nv10").text().contains("uint rc_in_rgb[2];"));
     bench.run("lower --generic --to wgsl").failed(2, "no generic text");
+    bench.run("lower --generic --whole --to c99 -o vendor").text();
+    let header = fs::read_to_string(bench.path("vendor/ninebit_pixels.h")).unwrap();
+    assert!(header.contains("int nb_draw_pixel(") && bench.path("vendor/ninebit_pixels.c").exists(), "{header}");
+    bench.run("lower --generic --whole --to glsl").failed(2, "--to c99");
     bench.run("lower --generic --to glsl -o vendor").failed(2, "stdout");
     bench.run("lower --generic lit.words --to c99").failed(2, "cannot be used with");
     bench.run("lower lit-words-file.ron --whole --to glsl -o shaders").text();

@@ -30,6 +30,8 @@ pub(crate) struct Code {
     lines: RefCell<Vec<Line>>,
     known: RefCell<HashMap<Operation, u32>>,
     rule: Cell<&'static str>,
+    /// Whether divisors that are no constants may be other than powers of two.
+    any_divisors: Cell<bool>,
 }
 
 impl Code {
@@ -58,6 +60,16 @@ impl Code {
         let lines = lines.into_iter().zip(&used).filter(|(_, used)| **used);
         let lines = lines.map(|(line, _)| Line { operation: line.operation.renamed(&renamed), ..line }).collect();
         (lines, renamed)
+    }
+
+    /// Says that divisors may be other than powers of two.
+    pub(crate) fn allow_any_divisors(&self) {
+        self.any_divisors.set(true);
+    }
+
+    /// Returns whether divisors may be other than powers of two.
+    pub(crate) fn allows_any_divisors(&self) -> bool {
+        self.any_divisors.get()
     }
 
     /// Sets the rule of the lines that are made from now on.

@@ -35,7 +35,10 @@ impl Setup {
     /// Makes the code for the function of a draw's whole pixel.
     pub fn new(plan: &Plan, draw: &PlannedDraw, function: &Function) -> Setup {
         let code = Code::default();
-        let reader = Reader { code: &code, profile: plan.profile, draw };
+        let holds_w = Truth::Known(draw.depth_test.as_ref().is_some_and(|test| test.w_buffer));
+        let fixed_fog = draw.fog.function.map_or(-1, |function| fog::not_finite(function.mode).into());
+        let state = SetupState { holds_w, perspective: Truth::Known(true), fixed_fog: Number::Constant(fixed_fog) };
+        let reader = Reader { code: &code, profile: plan.profile, state };
         let fields = function.inputs().into_iter().filter_map(|input| match input {
             // The offset of DEP-5 is its caller's, and so are points.
             Input::Triangle(Field::Offset | Field::OffsetExponent | Field::Sprite(_) | Field::SpriteSize) => None,
@@ -43,7 +46,23 @@ impl Setup {
             _ => None,
         });
         let fields: BTreeSet<Field> = fields.chain(fields_of_coverage()).collect();
-        let outputs: Vec<(Field, Operand)> = fields.into_iter().map(|field| (field, reader.field(field))).collect();
+        let outputs = fields.into_iter().map(|field| (field, reader.field(field))).collect();
+        Setup::from_outputs(code, outputs)
+    }
+
+    /// Makes the code of fields whatever the state, which `state` reads.
+    pub(crate) fn of_any(
+        profile: Profile,
+        fields: &[Field],
+        state: impl for<'a> FnOnce(&'a Code) -> SetupState<'a>,
+    ) -> Setup {
+        let code = Code::default();
+        let reader = Reader { code: &code, profile, state: state(&code) };
+        let outputs = fields.iter().map(|field| (*field, reader.field(*field))).collect();
+        Setup::from_outputs(code, outputs)
+    }
+
+    fn from_outputs(code: Code, outputs: Vec<(Field, Operand)>) -> Setup {
         let (lines, renamed) = code.reachable(&outputs.iter().map(|output| output.1).collect::<Vec<_>>());
         Setup { lines, outputs: outputs.into_iter().map(|(field, operand)| (field, renamed(operand))).collect() }
     }
@@ -127,14 +146,25 @@ fn fields_of_coverage() -> impl Iterator<Item = Field> {
     (0..3).flat_map(|k| [Field::EdgeX(k), Field::EdgeY(k), Field::Edge(k), Field::Owns(k)])
 }
 
-/// Reads the rules of set-up.
-struct Reader<'a, 's> {
-    code: &'a Code,
-    profile: Profile,
-    draw: &'s PlannedDraw,
+/// What set-up reads of a draw's state.
+#[derive(Clone, Copy)]
+pub(crate) struct SetupState<'a> {
+    /// Whether the depth buffer holds w.
+    pub(crate) holds_w: Truth<'a>,
+    /// Whether attributes are in perspective.
+    pub(crate) perspective: Truth<'a>,
+    /// The fog byte of triangles with coordinates that are not finite, or -1.
+    pub(crate) fixed_fog: Number<'a>,
 }
 
-impl<'a> Reader<'a, '_> {
+/// Reads the rules of set-up.
+struct Reader<'a> {
+    code: &'a Code,
+    profile: Profile,
+    state: SetupState<'a>,
+}
+
+impl<'a> Reader<'a> {
     fn input(&self, k: usize, attribute: Attribute) -> Number<'a> {
         let input = Input::Vertex(k, attribute);
         Number::new(self.code, self.code.input(input, input.range()))
@@ -176,24 +206,25 @@ impl<'a> Reader<'a, '_> {
             Field::Coordinate(unit, component, part) => self.linear(Attribute::Coordinate(unit, component), part),
             Field::Fog(part) => self.linear(Attribute::Fog, part),
             Field::FogByte => self.fog_byte(),
-            Field::Depth(k) => self.number(self.input(k, self.depth())).operand(self.code),
-            Field::DepthDifference(reference, k) => {
+            Field::Depth(k) => self.depth(|attribute| self.input(k, attribute)),
+            Field::DepthDifference(reference, k) => self.depth(|attribute| {
                 self.code.by("DEP-1");
-                let [z, from] = [k, reference].map(|k| self.input(k, self.depth()));
-                self.number(self.difference(z, from)).operand(self.code)
-            }
+                let [z, from] = [k, reference].map(|k| self.input(k, attribute));
+                self.difference(z, from)
+            }),
             Field::DepthRatio(k) => {
                 self.code.by("DEP-6");
                 ratios(self.inputs(Attribute::W).map(|w| self.number(w)))[k].operand(self.code)
             }
-            Field::Offset | Field::OffsetExponent | Field::Sprite(_) | Field::SpriteSize => Operand::Constant(0),
+            Field::SpriteSize => Operand::Constant(-1),
+            Field::Offset | Field::OffsetExponent | Field::Sprite(_) => Operand::Constant(0),
         }
     }
 
-    /// Returns what the depth buffer holds of vertices.
-    fn depth(&self) -> Attribute {
-        let has_w = self.draw.depth_test.as_ref().is_some_and(|test| test.w_buffer);
-        if has_w { Attribute::W } else { Attribute::Z }
+    /// Returns the number that has the bits `of` what the depth buffer holds of vertices.
+    fn depth(&self, of: impl Fn(Attribute) -> Number<'a>) -> Operand {
+        let [z, w] = [Attribute::Z, Attribute::W].map(|attribute| self.number(of(attribute)));
+        ninebit::raster::weights::Number::or(w, self.state.holds_w, z).operand(self.code)
     }
 
     fn edges(&self) -> EdgeFunctions<Number<'a>> {
@@ -217,20 +248,18 @@ impl<'a> Reader<'a, '_> {
         let is_flat = equal(w[0], w[1]) & equal(w[1], w[2]);
         let ratios = ratios(w.map(|w| self.number(w)));
         let one = Called::Known(Binary::ONE);
-        ninebit::raster::weights::Number::or(one, is_flat, ratios[k]).operand(self.code)
+        ninebit::raster::weights::Number::or(one, is_flat | !self.state.perspective, ratios[k]).operand(self.code)
     }
 
     /// FOG-4, FOG-5: returns the byte of a triangle with a coordinate that is not finite, or -1.
     fn fog_byte(&self) -> Operand {
         self.code.by("FOG-5");
-        let Some(function) = &self.draw.fog.function else { return Operand::Constant(-1) };
         let exponent = Operand::Constant(0x7f80_0000);
         let is_infinite = self.inputs(Attribute::Fog).map(|fog| {
             let bits = self.code.make(Operation::And(fog.operand(), exponent));
             Truth::new(self.code, Test(CompareFunction::Equal, [bits, exponent]))
         });
         let [a, b, c] = is_infinite;
-        let byte = Number::Constant(fog::not_finite(function.mode).into());
-        Integer::or(byte, a | b | c, Number::Constant(-1)).operand()
+        Integer::or(self.state.fixed_fog, a | b | c, Number::Constant(-1)).operand()
     }
 }

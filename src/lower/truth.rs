@@ -146,6 +146,12 @@ impl<'a> Integer for Number<'a> {
         match by {
             Number::Constant(by) if by & (by - 1) == 0 => self.masked(by - 1),
             Number::Constant(by) => self - self.floor_divided(by).multiplied(Number::Constant(by)),
+            by if by.code().is_some_and(Code::allows_any_divisors) => {
+                // As many multiples of the divisor as make any number positive.
+                let multiples = by * Number::Constant((-self.range().0).max(0));
+                let positive = (self + multiples).within(0, i64::MAX);
+                (positive - positive.quotient(by) * by).within(0, by.range().1 - 1)
+            }
             by => {
                 let last = by - Number::Constant(1);
                 let (most, code) = (last.range().1, last);

@@ -16,10 +16,10 @@ pub(crate) struct Arguments {
     /// The scene file, or a pixel program in a file of its own
     #[arg(value_name = "SCENE|PROGRAM", required_unless_present = "generic")]
     source: Option<PathBuf>,
-    /// C99, GLSL: one text for every program, which reads the words of the registers of `--profile` while it runs; Verilog: a module for each step of a pixel
+    /// C99, GLSL: one text for every program, which reads the words of the registers of `--profile` while it runs; Verilog: a module for each step of a pixel. With `--whole`, C99: one text for every draw
     #[arg(long, conflicts_with_all = ["source", "language", "draw", "uniform", "textures", "fragment"])]
     generic: bool,
-    /// With `--generic --to c99`: write ninebit_combiners.h and ninebit_combiners.c to this folder; without it, one text of both goes to stdout. With `--whole --to glsl`: write a vertex and a fragment shader for each draw, drawN.vert and drawN.frag
+    /// With `--generic --to c99`: write ninebit_combiners.h and ninebit_combiners.c, or with `--whole` ninebit_pixels.h and ninebit_pixels.c, to this folder; without it, one text of both goes to stdout. With `--whole --to glsl`: write a vertex and a fragment shader for each draw, drawN.vert and drawN.frag
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -39,7 +39,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum, value_name = "FORM", default_value_t = TextureInput::Registers)]
     textures: TextureInput,
     /// C99, GLSL, WGSL: a scene's draws from the place of a pixel, the constants of its triangle and the memories of textures to the stored words
-    #[arg(long, conflicts_with_all = ["generic", "uniform", "textures", "fragment"])]
+    #[arg(long, conflicts_with_all = ["uniform", "textures", "fragment"])]
     whole: bool,
     /// Functions of a scene's draws: end with the fragment, before alpha test, blend and store. A program alone always does
     #[arg(long)]
@@ -108,13 +108,18 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
 /// Prints or writes the generic text.
 fn generic(arguments: &Arguments) -> Result<(), Failure> {
     let text = Generic { chip: arguments.program.profile, policies: arguments.state.policies()? };
+    let c99 = || if arguments.whole { text.whole_c99() } else { text.c99() };
     match (arguments.to, &arguments.output) {
         (Form::C99, Some(folder)) => {
-            let Sources { header, source } = text.c99();
-            write_below(&folder.join("ninebit_combiners.h"), header.as_bytes())?;
-            Ok(write_below(&folder.join("ninebit_combiners.c"), source.as_bytes())?)
+            let Sources { header, source, name } = c99();
+            write_below(&folder.join(format!("{name}.h")), header.as_bytes())?;
+            Ok(write_below(&folder.join(format!("{name}.c")), source.as_bytes())?)
         }
-        (Form::C99, None) => Ok(write_text(&text.c99().whole())?),
+        (Form::C99, None) => Ok(write_text(&c99().whole())?),
+        _ if arguments.whole => Err(Failure::usage(
+            "there is no generic text of whole pixels of this form".to_string(),
+            "take `--to c99`, or leave `--whole` or `--generic` out",
+        )),
         (Form::Glsl, None) => Ok(write_text(&text.glsl())?),
         (Form::Verilog, None) => Ok(write_text(&text.verilog())?),
         (Form::Glsl | Form::Verilog, Some(_)) => Err(Failure::usage(

@@ -7,6 +7,7 @@
 mod modules;
 mod pieces;
 mod text;
+mod whole;
 
 use ninebit::state::{Policies, Profile};
 
@@ -22,16 +23,18 @@ pub struct Generic {
 /// The C files of a generic text.
 #[derive(Clone, Debug)]
 pub struct Sources {
-    /// Contents of `ninebit_combiners.h`, which declares the functions.
+    /// Contents of the header, which declares the functions.
     pub header: String,
-    /// Contents of `ninebit_combiners.c`, which includes the header.
+    /// Contents of the source, which includes the header.
     pub source: String,
+    /// Name of both files, without `.h` and `.c`.
+    pub name: &'static str,
 }
 
 impl Sources {
     /// Returns both files as one text, which needs no other file.
     pub fn whole(&self) -> String {
-        format!("{}\n{}", self.header, self.source.replace("#include \"ninebit_combiners.h\"\n\n", ""))
+        format!("{}\n{}", self.header, self.source.replace(&format!("#include \"{}.h\"\n\n", self.name), ""))
     }
 }
 
@@ -39,12 +42,17 @@ impl Generic {
     /// Returns the words of the state in the order of its members: name, number of words, and method of the first. The methods of the others
     /// follow in steps of four bytes.
     pub fn words(&self) -> Vec<(&'static str, usize, u32)> {
-        text::words(self.chip).collect()
+        text::words(self.chip).map(|words| (words.name, words.elements.0, words.method)).collect()
     }
 
     /// Prints C99 without dependencies, allocation or undefined behaviour.
     pub fn c99(&self) -> Sources {
         text::c99(self)
+    }
+
+    /// Prints C99 for whole pixels of every draw: from words of state, constants of a triangle and memories of textures to the stored words.
+    pub fn whole_c99(&self) -> Sources {
+        whole::c99(self)
     }
 
     /// Prints the steps of a pixel as combinational modules of Verilog-2001; connecting them is left to the user.

@@ -11,6 +11,7 @@ use ninebit_program::registers::{OPERATIONS, raster};
 
 use crate::code::{Code, Kind, Line, Operand, Operation, Range, Test, enclosing};
 use crate::input::{Input, Local};
+use crate::kind::is_wide;
 use crate::number::{Factor, Number, Sum, Word};
 use crate::order::{Block, Listing};
 
@@ -29,23 +30,40 @@ pub(super) struct Piece {
     /// If the array holds the inputs as well, the number of channels, to each of which the case is applied.
     pub(super) each: Option<usize>,
     pub(super) kind: Kind,
+    /// Whether numbers of the results are 64 bits wide, whatever their range.
+    pub(super) wide: bool,
     pub(super) cases: Vec<Case>,
 }
 
 /// Makes a piece with a single case that returns a number.
-fn piece(name: &'static str, about: &'static str, parameters: &'static str, cases: Vec<Case>) -> Piece {
-    Piece { about, name, chooses: None, parameters, array: None, each: None, kind: Kind::Number, cases }
+pub(super) fn piece(name: &'static str, about: &'static str, parameters: &'static str, cases: Vec<Case>) -> Piece {
+    Piece { about, name, chooses: None, parameters, array: None, each: None, kind: Kind::Number, wide: false, cases }
 }
 
 impl Piece {
     /// Sets the parameter that selects a case.
-    fn by(self, parameter: &'static str) -> Piece {
+    pub(super) fn by(self, parameter: &'static str) -> Piece {
         Piece { chooses: Some(parameter), ..self }
     }
 
+    /// Returns whether the results are numbers that may need more than 32 bits.
+    pub(super) fn is_wide(&self) -> bool {
+        self.kind == Kind::Number && (self.wide || is_wide(range(&self.cases)))
+    }
+
     /// Sets the array that holds the results.
-    fn filling(self, array: &'static str) -> Piece {
+    pub(super) fn filling(self, array: &'static str) -> Piece {
         Piece { array: Some(array), ..self }
+    }
+
+    /// Makes the results numbers of 64 bits.
+    pub(super) fn wide(self) -> Piece {
+        Piece { wide: true, ..self }
+    }
+
+    /// Makes the results binary numbers.
+    pub(super) fn binary(self) -> Piece {
+        Piece { kind: Kind::Binary, ..self }
     }
 
     /// Sets the array whose channels are changed one by one, and their number.
@@ -79,23 +97,23 @@ const DESTINATION: [&str; 4] = ["destination[0]", "destination[1]", "destination
 const CONSTANT: [&str; 4] = ["constant[0]", "constant[1]", "constant[2]", "constant[3]"];
 
 /// Reads a rule for one value of a field, and writes down its code.
-struct Reader<'a> {
-    code: &'a Code,
+pub(super) struct Reader<'a> {
+    pub(super) code: &'a Code,
     listing: Listing<'a>,
     /// Number of times that all sums are halved: two if factors are in steps of a half, otherwise none.
     halvings: u32,
 }
 
 impl<'a> Reader<'a> {
-    fn local(&self, name: &'static str, range: Range) -> Number<'a> {
+    pub(super) fn local(&self, name: &'static str, range: Range) -> Number<'a> {
         Number::new(self.code, self.code.input(Input::Local(Local { name, kind: Kind::Number, range }), range))
     }
 
-    fn all<const N: usize>(&self, names: [&'static str; N], range: Range) -> [Number<'a>; N] {
+    pub(super) fn all<const N: usize>(&self, names: [&'static str; N], range: Range) -> [Number<'a>; N] {
         names.map(|name| self.local(name, range))
     }
 
-    fn word(&self, name: &'static str) -> Word<'a> {
+    pub(super) fn word(&self, name: &'static str) -> Word<'a> {
         let range = (0, 0xffff_ffff);
         Word(Number::new(self.code, self.code.input(Input::Local(Local { name, kind: Kind::Word, range }), range)))
     }
@@ -117,7 +135,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Returns 1 if the test holds, otherwise 0.
-    fn holds(&self, test: Test) -> Number<'a> {
+    pub(super) fn holds(&self, test: Test) -> Number<'a> {
         match self.code.decided(test) {
             Some(holds) => Number::Constant(holds.into()),
             None => Number::Constant(1).selected(test, self.code, Number::Constant(0)),
@@ -126,13 +144,18 @@ impl<'a> Reader<'a> {
 }
 
 /// Makes pieces for the given policies.
-struct Maker {
-    policies: Policies,
-    block: Block,
+pub(super) struct Maker {
+    pub(super) policies: Policies,
+    pub(super) block: Block,
 }
 
 impl Maker {
-    fn case(&self, value: u32, name: &str, of: impl for<'a> FnOnce(&mut Reader<'a>) -> Vec<Number<'a>>) -> Case {
+    pub(super) fn case(
+        &self,
+        value: u32,
+        name: &str,
+        of: impl for<'a> FnOnce(&mut Reader<'a>) -> Vec<Number<'a>>,
+    ) -> Case {
         let code = Code::default();
         let mut listing = Listing::new(&code, self.policies);
         listing.enter(self.block);
@@ -145,7 +168,7 @@ impl Maker {
     }
 
     /// Makes two cases: a flag that is not set, and one that is.
-    fn flagged(
+    pub(super) fn flagged(
         &self,
         [no, yes]: [&str; 2],
         of: impl for<'a> Fn(&mut Reader<'a>, bool) -> Vec<Number<'a>>,
@@ -154,7 +177,7 @@ impl Maker {
     }
 
     /// Makes a case for each value of a field.
-    fn cases<T: Named + 'static>(
+    pub(super) fn cases<T: Named + 'static>(
         &self,
         value: impl Fn(T) -> u32,
         of: impl for<'a> Fn(&mut Reader<'a>, T) -> Vec<Number<'a>>,

@@ -1,11 +1,13 @@
 //! Prints the generic text: pieces as functions, and the functions that call them.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use ninebit::combiner::general::component_channel;
 use ninebit::combiner::registers::channel_name;
 use ninebit::state::{FinalRegister, Named, Profile};
 use ninebit_program::registers::layout::{self, Field};
+use ninebit_program::registers::unit::{self, Words};
 use ninebit_program::registers::{Word, component, raster, register_code as code};
 
 use super::pieces::{Case, Piece, Write, initial_spare0, mapped, pieces, writes};
@@ -14,7 +16,22 @@ use crate::code::Kind;
 use crate::language::{Body, Language, ROUNDING, Syntax};
 
 /// Words in which C and GLSL differ. The text is written with the words on the left; C and GLSL replace them by those on the right.
-const WORDS: [(&str, [&str; 2]); 16] = [
+const WORDS: [(&str, [&str; 2]); 31] = [
+    ("@triangle", ["const struct ninebit_triangle *triangle", "NinebitTriangle triangle"]),
+    ("@textures", ["const uint32_t *const texture[4], ", ""]),
+    ("@texture, ", ["texture, ", ""]),
+    ("@texel(unit", ["nb_texel(texture, unit", "ninebit_texel(int(unit)"]),
+    ("@t.", ["triangle->", "triangle."]),
+    ("@surface", ["uint32_t *word, uint32_t *depth", "inout uint word, inout uint depth"]),
+    ("@word", ["*word", "word"]),
+    ("@depth", ["*depth", "depth"]),
+    ("@image", ["struct nb_image", "nb_image"]),
+    ("@given", ["struct nb_inputs", "NinebitInputs"]),
+    ("@&", ["&", ""]),
+    ("@binary", ["struct ninebit_binary", "ivec2"]),
+    ("@long(", ["(int64_t)(", "nb_long("]),
+    ("@long", ["int64_t", "uvec2"]),
+    ("@narrow(", ["(int32_t)(", "ninebit_narrow("]),
     ("@flatten", ["NB_FLATTEN ", ""]),
     ("@fn ", ["static inline ", ""]),
     ("@uint(", ["(uint32_t)(", "uint("]),
@@ -33,11 +50,12 @@ const WORDS: [(&str, [&str; 2]); 16] = [
     ("@public ", ["", ""]),
 ];
 
-/// Returns the words that a chip has: name, number of words, method of the first.
-pub(super) fn words(chip: Profile) -> impl Iterator<Item = (&'static str, usize, u32)> {
-    let words = Word::ALL.iter().map(move |word| (word.name(), word.count(chip), word.method(chip)));
-    let raster = raster::Method::ALL.iter().map(|method| (method.name(), 1, method.number()));
-    words.chain(raster).filter(|(_, count, _)| *count > 0)
+/// Returns the words that a chip has: those of the combiners and of blending.
+pub(super) fn words(chip: Profile) -> impl Iterator<Item = Words> {
+    let of = |name, count, method| Words { name, method, elements: (count, 4), words: 1 };
+    let words = Word::ALL.iter().map(move |word| of(word.name(), word.count(chip), word.method(chip)));
+    let raster = raster::Method::ALL.iter().map(move |method| of(method.name(), 1, method.number()));
+    words.chain(raster).filter(|words| words.elements.0 > 0)
 }
 
 /// How inputs are mapped: shaders compute the mapping, but on a processor a table is faster.
@@ -47,26 +65,15 @@ enum Mapped {
     Looked,
 }
 
-struct Printer<'g> {
+pub(super) struct Printer<'g> {
     generic: &'g Generic,
     syntax: &'static dyn Syntax,
+    words: Vec<Words>,
+    /// Length of a value's text above which it has a line of its own.
+    longest: usize,
 }
 
-pub(super) fn c99(generic: &Generic) -> Sources {
-    let printer = Printer { generic, syntax: Language::C99.syntax() };
-    let (mut header, mut source) = (String::new(), String::new());
-    let chip = printer.chip();
-    let _ = write!(
-        header,
-        "/* The combiners and raster operations of the {chip} class, from register words to the stored word. Integers only; nothing is allocated. */\n\
-         #ifndef NINEBIT_COMBINERS_H\n#define NINEBIT_COMBINERS_H\n\n#include <stdint.h>\n\n#ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n\
-         /* Words as a driver writes them, with the methods that write them. What is not written is 0. */\nstruct nb_state {{\n{}}};\n\n\
-         /* What one pixel brings. Colours are R, G, B, A. */\nstruct nb_inputs {{\n{}}};\n\n",
-        printer.members(),
-        C99_INPUTS
-    );
-    header.push_str(
-        "/* Writes the word of a method. 0: it is none of these. */\nint nb_method(struct nb_state *state, uint32_t method, uint32_t word);\n\
+const DECLARATIONS: &str = "/* Writes the word of a method. 0: it is none of these. */\nint nb_method(struct nb_state *state, uint32_t method, uint32_t word);\n\
          /* R, G, B, A as they leave the final combiner: 0 to 255. */\n\
          void nb_fragment(const struct nb_state *state, const struct nb_inputs *inputs, int32_t fragment[4]);\n\
          /* Alpha test (ROP-1): 0 if the fragment is dropped. */\n\
@@ -74,24 +81,21 @@ pub(super) fn c99(generic: &Generic) -> Sources {
          /* What a surface that holds a word holds after a fragment that was not dropped. */\n\
          uint32_t nb_stored(const struct nb_state *state, const int32_t fragment[4], uint32_t destination);\n\
          /* All of it: what the surface holds after the pixel. */\n\
-         uint32_t nb_pixel(const struct nb_state *state, const struct nb_inputs *inputs);\n\n\
-         #ifdef __cplusplus\n}\n#endif\n\n#endif\n",
-    );
-    let [first, second, third] = ROUNDING;
-    let _ = write!(source, "/* {first}\n   {second}\n   {third} */\n#include \"ninebit_combiners.h\"\n\n");
-    source.push_str("static inline int32_t ninebit_least(int32_t a, int32_t b) { return a < b ? a : b; }\n");
-    source.push_str("static inline int32_t ninebit_greatest(int32_t a, int32_t b) { return a > b ? a : b; }\n\n");
-    source.push_str(
-        "/* All of a pixel in one function: calls would take half of its time. */\n\
-         #if defined(__GNUC__)\n#define NB_FLATTEN __attribute__((flatten))\n#else\n#define NB_FLATTEN\n#endif\n\n",
-    );
-    source.push_str(&printer.method());
-    source.push_str(&translated(&printer.body(Mapped::Looked), 0));
-    Sources { header, source }
+         uint32_t nb_pixel(const struct nb_state *state, const struct nb_inputs *inputs);\n";
+
+const LIMITS: &str = "static inline int32_t ninebit_least(int32_t a, int32_t b) { return a < b ? a : b; }
+static inline int32_t ninebit_greatest(int32_t a, int32_t b) { return a > b ? a : b; }
+
+";
+
+pub(super) fn c99(generic: &Generic) -> Sources {
+    let printer = Printer::new(generic, Language::C99.syntax());
+    let header = printer.header("The combiners and raster operations", "NINEBIT_COMBINERS_H", "", "");
+    Sources { header, source: printer.source("ninebit_combiners.h", LIMITS), name: "ninebit_combiners" }
 }
 
 pub(super) fn glsl(generic: &Generic) -> String {
-    let printer = Printer { generic, syntax: Language::Glsl.syntax() };
+    let printer = Printer::new(generic, Language::Glsl.syntax());
     let chip = printer.chip();
     let mut out = format!(
         "// The combiners and raster operations of the {chip} class, from register words to the stored word.\n"
@@ -123,7 +127,7 @@ const GLSL_INPUTS: &str = "    ivec4 primary;    /* interpolated diffuse, 0 to 2
 ";
 
 /// Translates the text into C (0) or GLSL (1).
-fn translated(text: &str, language: usize) -> String {
+pub(super) fn translated(text: &str, language: usize) -> String {
     WORDS.iter().fold(unrolled(text), |text, (word, words)| text.replace(word, words[language]))
 }
 
@@ -143,7 +147,7 @@ fn unrolled(text: &str) -> String {
 }
 
 /// Returns an expression for a field of a word.
-fn field(word: &str, field: Field) -> String {
+pub(super) fn field(word: &str, field: Field) -> String {
     match (field.shift, field.shift + field.bits) {
         (0, _) => format!("{word} & {}u", field.most()),
         (shift, 32) => format!("{word} >> {shift}"),
@@ -156,7 +160,94 @@ fn is_set(word: &str, name: Field) -> String {
     format!("({}) != 0u", field(word, name))
 }
 
-impl Printer<'_> {
+/// Returns rules as a comment.
+fn remark(rules: &str) -> String {
+    if rules.is_empty() { String::new() } else { format!(" /* {rules} */") }
+}
+
+/// Length of lines that are filled with several statements.
+const FILLED: usize = 120;
+
+/// Joins statements as long as they fit into a line.
+fn filled(statements: Vec<String>) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for statement in statements {
+        match lines.last_mut() {
+            Some(last) if last.len() + statement.len() < FILLED => *last += &format!(" {statement}"),
+            _ => lines.push(statement),
+        }
+    }
+    lines
+}
+
+/// Returns the label of a case.
+fn label(case: &Case) -> String {
+    if case.value > 15 { format!("case {:#x}u:", case.value) } else { format!("case {}u:", case.value) }
+}
+
+/// Prints cases with the same statements, in one line if they fit.
+fn dense_case(cases: &[&Case], statements: &[String], is_default: bool) -> String {
+    let mut labels =
+        filled(cases.iter().map(|case| label(case)).chain(is_default.then(|| "default:".to_string())).collect());
+    let names: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
+    let names = names.iter().enumerate().filter(|(n, name)| !names[..*n].contains(name)).map(|(_, name)| *name);
+    let names = format!("/* {} */", names.collect::<Vec<_>>().join(", "));
+    let both = format!("{} {} break; {names}", labels.join(" "), statements.join(" "));
+    if statements.len() <= 1 && both.len() < FILLED + 40 {
+        return format!("    {both}\n");
+    }
+    labels.last_mut().into_iter().for_each(|last| *last += &format!(" {names}"));
+    let mut out: String = labels.iter().map(|line| format!("    {line}\n")).collect();
+    statements.iter().for_each(|line| _ = writeln!(out, "        {line}"));
+    out + "        break;\n"
+}
+
+/// Prints pieces as functions.
+pub(super) fn pieces_text(printer: &Printer<'_>, pieces: &[Piece]) -> String {
+    pieces.iter().map(|piece| printer.piece(piece)).collect()
+}
+
+impl<'g> Printer<'g> {
+    fn new(generic: &'g Generic, syntax: &'static dyn Syntax) -> Printer<'g> {
+        Printer { generic, syntax, words: words(generic.chip).collect(), longest: usize::MAX }
+    }
+
+    /// Prints texts of whole pixels.
+    pub(super) fn whole(generic: &'g Generic, syntax: &'static dyn Syntax) -> Printer<'g> {
+        let words = words(generic.chip).chain(unit::WORDS).collect();
+        Printer { words, longest: FILLED, ..Printer::new(generic, syntax) }
+    }
+
+    /// Prints the header of C.
+    pub(super) fn header(&self, what: &str, guard: &str, structures: &str, declarations: &str) -> String {
+        format!(
+            "/* {what} of the {} class, from register words to the stored word. Integers only; nothing is allocated. */\n\
+             #ifndef {guard}\n#define {guard}\n\n#include <stdint.h>\n\n#ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n\
+             /* Words as a driver writes them, with the methods that write them. What is not written is 0. */\nstruct nb_state {{\n{}}};\n\n\
+             /* What one pixel brings. Colours are R, G, B, A. */\nstruct nb_inputs {{\n{C99_INPUTS}}};\n\n{structures}{DECLARATIONS}{declarations}\n\
+             #ifdef __cplusplus\n}}\n#endif\n\n#endif\n",
+            self.chip(),
+            self.members(),
+        )
+    }
+
+    /// Prints the source of C, with what stands before all functions.
+    pub(super) fn source(&self, header: &str, first: &str) -> String {
+        let rounding = ROUNDING.join("\n   ");
+        format!(
+            "/* {rounding} */\n#include \"{header}\"\n\n{first}\
+             /* All of a pixel in one function: calls would take half of its time. */\n\
+             #if defined(__GNUC__)\n#define NB_FLATTEN __attribute__((flatten))\n#else\n#define NB_FLATTEN\n#endif\n\n{}{}",
+            self.method(),
+            translated(&self.body(Mapped::Looked), 0),
+        )
+    }
+
+    /// Returns whether statements share lines.
+    fn is_dense(&self) -> bool {
+        self.longest != usize::MAX
+    }
+
     fn chip(&self) -> &'static str {
         match self.generic.chip {
             Profile::Nv10 => "NV10 (Celsius)",
@@ -165,26 +256,36 @@ impl Printer<'_> {
     }
 
     fn members(&self) -> String {
-        let lines = words(self.generic.chip).map(|(name, count, method)| {
-            let name = if count > 1 { format!("{name}[{count}];") } else { format!("{name};") };
-            format!("    uint32_t {name:<24} /* {method:#06x} */\n")
+        let lines = self.words.iter().map(|words| {
+            let size = |count: usize| if count > 1 { format!("[{count}]") } else { String::new() };
+            let name = format!("{}{}{};", words.name, size(words.elements.0), size(words.words));
+            format!("    uint32_t {name:<24} /* {:#06x} */\n", words.method)
         });
         lines.collect()
     }
 
     fn method(&self) -> String {
         let mut out = "int nb_method(struct nb_state *state, uint32_t method, uint32_t word)\n{\n".to_string();
-        for (name, count, method) in words(self.generic.chip) {
-            if count > 1 {
-                let last = method + 4 * (count as u32 - 1);
-                let _ = write!(
-                    out,
-                    "    if (method >= {method:#x}u && method <= {last:#x}u && method % 4u == 0u) {{\n        state->{name}[(method - {method:#x}u) / 4u] = word;\n        return 1;\n    }}\n"
-                );
-            }
+        for Words { name, method, elements: (count, step), words } in self.words.iter().copied() {
+            let last = method + step * (count as u32 - 1) + 4 * (words as u32 - 1);
+            let from = format!("(method - {method:#x}u)");
+            let place = match (count, words) {
+                (1, 1) => continue,
+                (1, _) => format!("{from} / 4u"),
+                (_, 1) => format!("{from} / {step}u"),
+                _ => format!("{from} / {step}u][{from} % {step}u / 4u"),
+            };
+            let is_element = match step {
+                4 => "method % 4u == 0u".to_string(),
+                _ => format!("{from} % {step}u <= {}u && method % 4u == 0u", 4 * (words - 1)),
+            };
+            let _ = writeln!(
+                out,
+                "    if (method >= {method:#x}u && method <= {last:#x}u && {is_element}) {{ state->{name}[{place}] = word; return 1; }}"
+            );
         }
         out.push_str("    switch (method) {\n");
-        for (name, _, method) in words(self.generic.chip).filter(|(_, count, _)| *count == 1) {
+        for Words { name, method, .. } in self.words.iter().filter(|words| words.elements.0 * words.words == 1) {
             let _ = writeln!(out, "    case {method:#x}u: state->{name} = word; return 1;");
         }
         out + "    default: return 0;\n    }\n}\n\n"
@@ -210,7 +311,12 @@ impl Printer<'_> {
 
     /// Prints a piece as a function.
     fn piece(&self, piece: &Piece) -> String {
-        let kind = if piece.kind == Kind::Word { "@uint" } else { "@int" };
+        let kind = match piece.kind {
+            Kind::Binary => "@binary",
+            Kind::Word => "@uint",
+            Kind::Number if piece.is_wide() => "@long",
+            Kind::Number => "@int",
+        };
         let mut parameters: Vec<String> = piece.chooses.iter().map(|name| format!("@uint {name}")).collect();
         parameters.extend((!piece.parameters.is_empty()).then(|| piece.parameters.to_string()));
         let way = if piece.each.is_some() { "@both" } else { "@out" };
@@ -242,11 +348,13 @@ impl Printer<'_> {
             }
         }
         for (n, (cases, lines)) in groups.iter().enumerate() {
+            if !is_one && self.is_dense() {
+                out.push_str(&dense_case(cases, lines, n == 0));
+                continue;
+            }
             if !is_one {
                 for case in cases {
-                    let value =
-                        if case.value > 15 { format!("{:#x}u", case.value) } else { format!("{}u", case.value) };
-                    let _ = writeln!(out, "    case {value}: /* {} */", case.name);
+                    let _ = writeln!(out, "    {} /* {} */", label(case), case.name);
                 }
                 if n == 0 {
                     out.push_str("    default:\n");
@@ -290,18 +398,28 @@ impl Printer<'_> {
 
     /// Returns the statements of a case.
     fn statements(&self, piece: &Piece, case: &Case, place: &impl Fn(usize) -> String) -> Vec<String> {
-        let body = Body::from_lines(self.syntax, &case.lines, &case.results, &[]);
+        let body = Body::within(self.longest, self.syntax, &case.lines, (&case.results, &[]));
         let declares = !body.declarations.is_empty() && piece.chooses.is_some();
         let mut inner: Vec<String> = body.declarations.clone();
+        let (mut results, mut all_rules) = (Vec::new(), BTreeSet::new());
         for (n, result) in case.results.iter().enumerate() {
             let (value, rules) = body.result(*result, piece.kind);
-            let comment = if rules.is_empty() { String::new() } else { format!(" /* {rules} */") };
+            let value = if piece.is_wide() { body.widened(*result, value) } else { value };
             let equals = if piece.array.is_none() && piece.chooses.is_none() { "" } else { " =" };
             // A value that does not change needs no assignment.
-            if place(n) != value {
-                inner.push(format!("{}{equals} {value};{comment}", place(n)));
+            if place(n) == value {
+                continue;
             }
+            let comment = if self.is_dense() { String::new() } else { remark(&rules) };
+            results.push(format!("{}{equals} {value};{comment}", place(n)));
+            all_rules.extend(rules.split(", ").filter(|rule| !rule.is_empty()).map(str::to_string));
         }
+        if self.is_dense() {
+            let rules: Vec<String> = all_rules.into_iter().collect();
+            results = filled(results);
+            results.last_mut().into_iter().for_each(|last| last.push_str(&remark(&rules.join(", "))));
+        }
+        inner.extend(results);
         let block = |lines: &[String], out: &mut Vec<String>| {
             if declares {
                 out.push("{".to_string());

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::input::Local;
+use crate::setup::Setup;
 
 pub(super) struct C99;
 
@@ -196,10 +197,7 @@ fn type_of(kind: Kind, range: Range) -> &'static str {
     }
 }
 
-const WHOLE: &str = "\
-#include <stdint.h>
-#include <string.h>
-
+pub(crate) const STRUCTURES: &str = "\
 /* The number mantissa times 2^exponent. */
 struct ninebit_binary {
     int32_t mantissa, exponent;
@@ -231,6 +229,9 @@ struct ninebit_triangle {
     int32_t sprite[2], sprite_size; /* of a point: x and y in 1/16 pixel, size in 1/8 pixel (PNT-2), or -1 */
 };
 
+";
+
+const FUNCTIONS: &str = "\
 static inline struct ninebit_binary ninebit_binary(int32_t mantissa, int32_t exponent)
 {
     const struct ninebit_binary binary = {mantissa, exponent};
@@ -273,10 +274,26 @@ static inline uint32_t ninebit_difference(uint32_t a, uint32_t b)
 }
 ";
 
+/// Prints the statements that make the constants of a triangle.
+pub(crate) fn statements(setup: &Setup) -> String {
+    let results: Vec<Operand> = setup.outputs.iter().map(|output| output.1).collect();
+    let body = Body::within(whole::LONGEST, &C99, &setup.lines, (&results, &[]));
+    let mut out = body.printed();
+    for (field, operand) in &setup.outputs {
+        let value = body.operand(*operand, field.kind()).open();
+        out.push_str(&format!("    {} = {value};\n", C99.input(Input::Triangle(*field))));
+    }
+    out
+}
+
 impl whole::WholeSyntax for C99 {
+    fn functions(&self, structures: &str) -> String {
+        format!("#include <string.h>\n\n{structures}{FUNCTIONS}")
+    }
+
     fn whole_head(&self) -> String {
         let head = "Numbers are two's complement, and >> of a negative number is the floor, as in every compiler of today. Each line has its rules and its range.";
-        format!("/* {head} */\n{WHOLE}")
+        format!("/* {head} */\n#include <stdint.h>\n{}", self.functions(STRUCTURES))
     }
 
     fn helper(&self, helper: Helper) -> String {
@@ -303,18 +320,10 @@ impl whole::WholeSyntax for C99 {
     }
 
     fn setup(&self, draw: &Draw<'_>) -> String {
-        let results: Vec<Operand> = draw.setup.outputs.iter().map(|output| output.1).collect();
-        let body = Body::within(whole::LONGEST, &C99, &draw.setup.lines, (&results, &[]));
-        let name = &draw.name;
-        let mut out = format!(
+        let (name, statements) = (&draw.name, statements(draw.setup));
+        format!(
             "\n/* Sets up a triangle of it. */\n\
-             static inline void {name}_set_up(const struct ninebit_vertex vertex[3], struct ninebit_triangle *triangle)\n{{\n"
-        );
-        out.push_str(&body.printed());
-        for (field, operand) in &draw.setup.outputs {
-            let value = body.operand(*operand, field.kind()).open();
-            out.push_str(&format!("    {} = {value};\n", self.input(Input::Triangle(*field))));
-        }
-        out + "}\n"
+             static inline void {name}_set_up(const struct ninebit_vertex vertex[3], struct ninebit_triangle *triangle)\n{{\n{statements}}}\n"
+        )
     }
 }

@@ -10,7 +10,9 @@ mod wgsl;
 mod whole;
 mod wide;
 
+pub(crate) use c::{STRUCTURES, statements};
 pub(crate) use verilog::port;
+pub(crate) use whole::shared;
 
 use std::collections::BTreeSet;
 

@@ -321,7 +321,10 @@ fn parameters(helper: Helper, print: impl Fn(Local) -> String) -> String {
 
 impl WholeSyntax for wgsl::Wgsl {
     fn whole_head(&self) -> String {
-        ABOUT.to_string() + WGSL_HEAD
+        ABOUT.to_string() + &self.functions("")
+    }
+    fn functions(&self, structures: &str) -> String {
+        structures.to_string() + WGSL_HEAD
     }
     fn helper(&self, helper: Helper) -> String {
         let (name, about, rules) = helper.about();
@@ -345,8 +348,12 @@ impl WholeSyntax for wgsl::Wgsl {
 impl WholeSyntax for glsl::Glsl {
     fn whole_head(&self) -> String {
         format!(
-            "{ABOUT}// For GLSL 4.30 and GLSL ES 3.10: the line that tells the version stands above.\nprecision highp int;\n\nuint ninebit_texel(int unit, int at);\n{GLSL_HEAD}"
+            "{ABOUT}// For GLSL 4.30 and GLSL ES 3.10: the line that tells the version stands above.\nprecision highp int;\n\n{}",
+            self.functions("")
         )
+    }
+    fn functions(&self, structures: &str) -> String {
+        format!("{structures}uint ninebit_texel(int unit, int at);\n{GLSL_HEAD}")
     }
     fn helper(&self, helper: Helper) -> String {
         let (name, about, rules) = helper.about();

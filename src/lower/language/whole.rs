@@ -26,6 +26,8 @@ pub struct Draw<'f> {
 pub(crate) trait WholeSyntax: Syntax {
     /// Prints what stands before all helpers.
     fn whole_head(&self) -> String;
+    /// Prints the functions of numbers, with structures before them.
+    fn functions(&self, structures: &str) -> String;
     /// Prints the beginning of a helper.
     fn helper(&self, helper: Helper) -> String;
     /// Prints the end of a helper.
@@ -46,29 +48,10 @@ impl Language {
     /// Prints draws as functions from a pixel, its triangle and the memories of textures to the stored words. Returns `None` for Verilog, in which only
     /// the rules of a pixel's colours are printed.
     pub fn print_whole(self, draws: &[Draw<'_>]) -> Option<String> {
-        let (whole, syntax): (&dyn WholeSyntax, &'static dyn Syntax) = match self {
-            Language::C99 => (&c::C99, &c::C99),
-            Language::Glsl => (&glsl::Glsl, &glsl::Glsl),
-            Language::Wgsl => (&wgsl::Wgsl, &wgsl::Wgsl),
-            Language::Verilog => return None,
-        };
+        let (whole, syntax) = self.whole_syntax()?;
         let mut out = whole.whole_head();
         let lines = || draws.iter().flat_map(|draw| draw.function.lines.iter().chain(&draw.setup.lines));
-        let helpers: BTreeSet<Helper> = lines().filter_map(|line| line.operation.helper()).collect();
-        let tables: BTreeSet<Table> = lines().filter_map(|line| line.operation.table()).collect();
-        for (name, table) in TABLES.into_iter().filter(|(_, table)| tables.contains(table)) {
-            out.push_str(&whole.table(name, table));
-        }
-        for helper in Helper::ALL.into_iter().filter(|helper| helpers.contains(helper)) {
-            let (lines, result) = helper.lines();
-            let body = Body::within(LONGEST, syntax, &lines, (&[result], &[]));
-            out.push_str(&whole.helper(helper));
-            out.push_str(&body.printed());
-            out.push_str(&whole.result(body.operand(result, helper.kind()).open()));
-        }
-        let (lines, result) = coverage();
-        let body = Body::within(LONGEST, syntax, &lines, (&[result], &[]));
-        out.push_str(&whole.coverage(&body.printed(), &body.operand(result, Kind::Number).term()));
+        out.push_str(&calls((whole, syntax), lines));
         for draw in draws {
             out.push_str(&whole.setup(draw));
             out.push('\n');
@@ -78,13 +61,56 @@ impl Language {
         Some(out)
     }
 
+    fn whole_syntax(self) -> Option<(&'static dyn WholeSyntax, &'static dyn Syntax)> {
+        Some(match self {
+            Language::C99 => (&c::C99, &c::C99),
+            Language::Glsl => (&glsl::Glsl, &glsl::Glsl),
+            Language::Wgsl => (&wgsl::Wgsl, &wgsl::Wgsl),
+            Language::Verilog => return None,
+        })
+    }
+
     /// Returns how a function of this language reads a constant of a triangle.
     pub fn field(self, field: Field) -> String {
         self.syntax().input(Input::Triangle(field))
     }
 }
 
+/// Prints what lines call, without the structures: functions of numbers, tables, helpers and coverage.
+pub(crate) fn shared<'l, L: Iterator<Item = &'l Line>>(language: Language, lines: impl Fn() -> L) -> String {
+    let both = language.whole_syntax();
+    both.map_or_else(String::new, |(whole, syntax)| whole.functions("") + &calls((whole, syntax), lines) + "\n")
+}
+
+/// Prints tables, helpers and coverage.
+fn calls<'l, L: Iterator<Item = &'l Line>>(
+    (whole, syntax): (&dyn WholeSyntax, &'static dyn Syntax),
+    lines: impl Fn() -> L,
+) -> String {
+    let mut out = String::new();
+    let helpers: BTreeSet<Helper> = lines().filter_map(|line| line.operation.helper()).collect();
+    let tables: BTreeSet<Table> = lines().filter_map(|line| line.operation.table()).collect();
+    for (name, table) in TABLES.into_iter().filter(|(_, table)| tables.contains(table)) {
+        out.push_str(&whole.table(name, table));
+    }
+    for helper in Helper::ALL.into_iter().filter(|helper| helpers.contains(helper)) {
+        let (lines, result) = helper.lines();
+        let body = Body::within(LONGEST, syntax, &lines, (&[result], &[]));
+        out.push_str(&whole.helper(helper));
+        out.push_str(&body.printed());
+        out.push_str(&whole.result(body.operand(result, helper.kind()).open()));
+    }
+    let (lines, result) = coverage();
+    let body = Body::within(LONGEST, syntax, &lines, (&[result], &[]));
+    out + &whole.coverage(&body.printed(), &body.operand(result, Kind::Number).term())
+}
+
 impl Body<'_> {
+    /// Converts a result's text to 64 bits, unless it has them.
+    pub(crate) fn widened(&self, operand: Operand, text: String) -> String {
+        if self.is_wide(operand) { text } else { self.syntax.widened(text) }
+    }
+
     /// Returns the declarations as lines.
     pub(super) fn printed(&self) -> String {
         self.declarations.iter().map(|line| format!("    {line}\n")).collect()

@@ -13,6 +13,8 @@ mod drawn;
 mod setting;
 #[path = "common/shaded.rs"]
 mod shaded;
+#[path = "common/stated.rs"]
+mod stated;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -23,9 +25,12 @@ use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::random::Random;
 use ninebit::state::{Policies, Scene};
+use ninebit_methods::class::Family;
+use ninebit_program::registers::unit;
 use ninebit_test_support::random_scene;
 use proptest::strategy::{Strategy, ValueTree};
 use setting::{GLSL_COMPILER, any_policies, compiler, python, runner, setting, works};
+use stated::Programs;
 
 /// Returns the scenes of the repository, sorted.
 fn scenes() -> Vec<PathBuf> {
@@ -67,14 +72,16 @@ enum Way {
     Wgsl,
     /// Printed as shaders of GLSL, which OpenGL draws.
     Pair,
+    /// By the generic text in C.
+    Generic,
 }
 
 /// Draws a scene by its functions and compares it.
 ///
 /// # Errors
 /// Why it is left out.
-fn hold(scene: &Scene, policies: Policies, way: Way, what: &str) -> Result<(), String> {
-    let plan = Plan::compile(scene, &PlanOptions { policies, ..PlanOptions::default() }).unwrap();
+fn hold(scene: &Scene, policies: Policies, (way, programs): (Way, &mut Programs), what: &str) -> Result<(), String> {
+    let plan = Plan::compile(scene, &PlanOptions { policies, prune: way != Way::Generic }).unwrap();
     let printed = Printed::new(scene, &plan);
     let folder = tempfile::tempdir().unwrap();
     let found = match way {
@@ -86,6 +93,11 @@ fn hold(scene: &Scene, policies: Policies, way: Way, what: &str) -> Result<(), S
         }
         Way::Pair if !printed.is_plain() => return Err("no triangles".to_string()),
         Way::Pair => printed.paired(folder.path()).unwrap_or_else(|error| panic!("{what}: {error}")),
+        Way::Generic => match printed.generic(folder.path(), programs) {
+            Ok(frames) => frames,
+            Err((true, reason)) => return Err(reason),
+            Err((false, error)) => panic!("{what}: {error}"),
+        },
         Way::Wgsl if !printed.is_plain() || printed.comparisons() > MAX_COMPARISONS => {
             return Err("too large".to_string());
         }
@@ -98,9 +110,10 @@ fn hold(scene: &Scene, policies: Policies, way: Way, what: &str) -> Result<(), S
 /// Draws some scenes of the repository.
 fn hold_committed(way: Way, step: usize) {
     let (mut left_out, mut drawn) = (BTreeMap::<String, Vec<String>>::new(), 0);
+    let mut programs = Programs::default();
     for path in scenes().into_iter().step_by(step) {
         let Some(scene) = load(&path) else { continue };
-        match hold(&scene, Policies::DEFAULT, way, &path.to_string_lossy()) {
+        match hold(&scene, Policies::DEFAULT, (way, &mut programs), &path.to_string_lossy()) {
             Ok(()) => drawn += 1,
             Err(reason) => {
                 let name = path.file_stem().unwrap().to_string_lossy().into_owned();
@@ -125,11 +138,11 @@ fn printed_c_draws_committed_scenes() {
 }
 
 /// Draws scenes of captured frames.
-#[test]
-fn printed_c_draws_captured_scenes() {
+fn hold_captured(way: Way) {
     if !works(&compiler(), &["--version"]) {
         return;
     }
+    let mut programs = Programs::default();
     let step = setting("NINEBIT_WHOLE_FRAMES").unwrap_or(1501) as usize;
     let mut drawn = 0;
     for frame in ninebit_captures::frames(&[]).unwrap().into_iter().step_by(step) {
@@ -137,11 +150,50 @@ fn printed_c_draws_captured_scenes() {
         // Some programs only clear.
         let Some(scene) = scene.filter(|scene| !scene.draws.is_empty()) else { continue };
         let name = format!("{}/{}", frame.suite, frame.name);
-        hold(&scene, Policies::DEFAULT, Way::C, &name).unwrap();
+        hold(&scene, Policies::DEFAULT, (way, &mut programs), &name).unwrap();
         drawn += 1;
     }
     println!("{drawn} frames");
     assert!(drawn > 0);
+}
+
+/// The words of state have the names and the methods of the class.
+#[test]
+fn words_of_state_are_those_of_the_class() {
+    for words in unit::WORDS {
+        let (elements, step) = words.elements;
+        for at in 0..elements as u32 {
+            let place = Family::Kelvin.find(words.method + step * at).unwrap();
+            assert_eq!(place.method.name, format!("SET_{}", words.name.to_uppercase()));
+            assert_eq!(place.word + words.words as u32, place.method.words);
+            assert!(place.element == at || elements == 1, "{words:?}");
+        }
+    }
+}
+
+#[test]
+fn generic_c_draws_committed_scenes() {
+    if works(&compiler(), &["--version"]) {
+        hold_committed(Way::Generic, setting("NINEBIT_WHOLE_EVERY").unwrap_or(5) as usize);
+    }
+}
+
+#[test]
+fn generic_c_draws_random_scenes() {
+    if works(&compiler(), &["--version"]) {
+        let count = setting("NINEBIT_WHOLE_SCENES").unwrap_or(200);
+        hold_random(Way::Generic, setting("NINEBIT_WHOLE_SEED").unwrap_or(45), count);
+    }
+}
+
+#[test]
+fn printed_c_draws_captured_scenes() {
+    hold_captured(Way::C);
+}
+
+#[test]
+fn generic_c_draws_captured_scenes() {
+    hold_captured(Way::Generic);
 }
 
 #[test]
@@ -172,12 +224,19 @@ fn printed_shaders_draw_scenes() {
 /// Draws random scenes. Returns how many were drawn.
 fn hold_random(way: Way, seed: u64, count: u64) -> u64 {
     let (mut runner, mut random, mut drawn) = (runner(seed), Random::seeded(seed), 0);
-    let scenes = random_scene::scene();
+    let (scenes, mut left_out) = (random_scene::scene(), BTreeMap::<String, u64>::new());
+    let mut programs = Programs::default();
     for number in 0..count {
         let scene = scenes.new_tree(&mut runner).unwrap().current();
-        let policies = if number % 2 == 1 { any_policies(&mut random) } else { Policies::DEFAULT };
-        drawn += u64::from(hold(&scene, policies, way, &format!("scene {number} of seed {seed}")).is_ok());
+        // The generic text is compiled for each set of policies.
+        let alternatives = if way == Way::Generic { number % 100 == 99 } else { number % 2 == 1 };
+        let policies = if alternatives { any_policies(&mut random) } else { Policies::DEFAULT };
+        match hold(&scene, policies, (way, &mut programs), &format!("scene {number} of seed {seed}")) {
+            Ok(()) => drawn += 1,
+            Err(reason) => *left_out.entry(reason).or_default() += 1,
+        }
     }
+    println!("{drawn} of {count} scenes; left out: {left_out:?}");
     drawn
 }
 

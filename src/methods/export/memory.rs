@@ -40,6 +40,19 @@ pub(crate) fn pitch(width: u32, bytes: u32) -> u32 {
 }
 
 impl MemoryMap {
+    /// Returns a map without memory, of which all addresses are 0.
+    pub(super) fn nowhere(scene: &Scene) -> MemoryMap {
+        let (targets, textures, palettes) = (scene.targets.len(), scene.textures.len(), scene.palettes.len());
+        MemoryMap {
+            bytes: Vec::new(),
+            surfaces: vec![0; targets],
+            depths: vec![0; targets],
+            swizzled: vec![false; targets],
+            textures: vec![0; textures],
+            palettes: vec![0; palettes],
+        }
+    }
+
     pub(super) fn new(scene: &Scene) -> Result<MemoryMap, ExportError> {
         let count = scene.targets.len();
         let mut placed = MemoryMap {

@@ -6,6 +6,7 @@ mod state;
 mod transform;
 mod units;
 mod vertices;
+mod words;
 
 use std::fmt;
 
@@ -15,6 +16,7 @@ use ninebit::state::{Profile, Scene};
 pub use memory::FIRST;
 pub(crate) use memory::pitch;
 pub use print::{push_buffer, trace};
+pub use words::draw_words;
 
 use crate::celsius;
 use crate::class::{self, Family};

@@ -11,6 +11,8 @@ use ninebit::frame::Frames;
 use ninebit::limits::MEMORY_IMAGE;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::raster::stroke::Figure;
+use ninebit::state::{Level, Texels, TextureImage};
+use ninebit::texture::planned::PlannedUnit;
 use ninebit_files::read::{self, Kind};
 use ninebit_lower::{Attribute, Field, Language};
 
@@ -20,7 +22,8 @@ use crate::setting::{bytes, compiler, run};
 /// Number of words of a vertex of the printed structure.
 const VERTEX: usize = 29;
 
-const MAIN: &str = r#"
+/// A program that draws what it reads by SET_UP, COVERS and DRAW; BEGIN_DRAW reads the state of a draw.
+pub const MAIN: &str = r#"
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -55,6 +58,7 @@ int main(int count, char **names)
     }
     for (uint32_t n = 0; n < draws; n++) {
         const uint32_t target = next(), triangles = next();
+        BEGIN_DRAW;
         const uint32_t *texture[4];
         for (int unit = 0; unit < 4; unit++) {
             const uint32_t length = next();
@@ -68,7 +72,7 @@ int main(int count, char **names)
             memset(&triangle, 0, sizeof triangle);
             memcpy(vertex, given, sizeof vertex);
             given += sizeof vertex / 4;
-            set_ups[n](vertex, &triangle);
+            SET_UP(n, vertex, &triangle);
             triangle.offset = next64();
             triangle.offset_exponent = (int32_t)next();
             triangle.sprite[0] = (int32_t)next();
@@ -89,8 +93,8 @@ int main(int count, char **names)
                 const uint32_t y = next(), from = next(), to = next();
                 for (uint32_t x = from; x < to; x++) {
                     uint32_t *const word = words[target] + y * width[target] + x, *const depth = depths[target] + y * width[target] + x;
-                    if (!is_stroke && !ninebit_covers(&triangle, (int32_t)x, (int32_t)y)) return 4;
-                    draw_pixel[n](&triangle, texture, (int32_t)x, (int32_t)y, word, depth);
+                    if (!is_stroke && !COVERS(&triangle, (int32_t)x, (int32_t)y)) return 4;
+                    DRAW(n, &triangle, texture, (int32_t)x, (int32_t)y, word, depth);
                 }
             }
         }
@@ -114,15 +118,18 @@ impl Printed<'_> {
             text,
             "typedef void set_up(const struct ninebit_vertex *, struct ninebit_triangle *);\n\
              typedef int pixel(const struct ninebit_triangle *, const uint32_t *const *, int32_t, int32_t, uint32_t *, uint32_t *);\n\
-             static set_up *const set_ups[] = {{{}}};\nstatic pixel *const draw_pixel[] = {{{}}};\n{MAIN}",
+             static set_up *const set_ups[] = {{{}}};\nstatic pixel *const draw_pixel[] = {{{}}};\n\
+             #define BEGIN_DRAW (void)0\n#define SET_UP(n, vertex, triangle) set_ups[n](vertex, triangle)\n\
+             #define COVERS ninebit_covers\n#define DRAW(n, ...) draw_pixel[n](__VA_ARGS__)\n{MAIN}",
             list(&|n| format!("draw{n}_set_up")),
             list(&|n| format!("draw{n}")),
         );
         text
     }
 
-    /// Returns what the program reads. Textures that are targets hold what the engine has drawn.
-    pub fn given(&self) -> Vec<u32> {
+    /// Returns what the program reads. With the states of draws, each precedes its draw, whose memories have all levels. Textures that are targets
+    /// hold what the engine has drawn.
+    pub fn given(&self, states: Option<&[Vec<u32>]>) -> Vec<u32> {
         let plan = self.plan;
         let mut given = self.targets(&cleared(plan));
         for (number, draw) in plan.draws().iter().enumerate() {
@@ -137,13 +144,27 @@ impl Printed<'_> {
                 self.triangle(number, &context, (rows, columns), &mut drawn);
             }
             given.extend([draw.target as u32, count]);
-            for memory in words.memories(draw) {
+            let mut sampled = draw.clone();
+            if let Some(states) = states {
+                given.extend(&states[number]);
+                sampled.units.iter_mut().for_each(|unit| self.restore_levels(unit));
+            }
+            for memory in words.memories(&sampled) {
                 given.push(memory.len() as u32);
                 given.extend(memory.iter());
             }
             given.extend(drawn);
         }
         given
+    }
+
+    /// Gives a unit the levels that no pixel can reach.
+    fn restore_levels(&self, unit: &mut PlannedUnit) {
+        if let TextureImage::Texels(Texels { width, height, levels, border, .. }) =
+            self.plan.textures()[unit.state.texture].image
+        {
+            unit.levels = Level::chain(unit.format, width, height, levels, border).0;
+        }
     }
 
     /// Appends a triangle with its spans.
@@ -222,7 +243,7 @@ impl Printed<'_> {
     /// What the compiler or the program says.
     pub fn compiled(&self, folder: &Path) -> Result<Frames, String> {
         std::fs::write(folder.join("whole.c"), self.c_text()).unwrap();
-        std::fs::write(folder.join("given.bin"), bytes(&self.given())).unwrap();
+        std::fs::write(folder.join("given.bin"), bytes(&self.given(None))).unwrap();
         let flags = std::env::var("NINEBIT_LOWER_CFLAGS").unwrap_or_else(|_| "-O1".to_string());
         let mut command = Command::new(compiler());
         command.args("-std=c99 -Wall -Wextra -Werror -pedantic -Wno-unused-function".split(' '));
