@@ -9,6 +9,7 @@
 mod binary;
 mod body;
 pub mod code;
+mod coordinates;
 mod draw;
 mod generic;
 mod helper;

@@ -3,6 +3,8 @@
 //! Most words are the same ([`Family::own`] knows their numbers). The others, and what the class does not have, stand here. Sources: the
 //! register database and the hardware tests of envytools (MIT), for the origin of the window Mesa's nouveau driver (MIT).
 
+use ninebit_program::registers::unit::ENABLE;
+
 use crate::class::{self, Family, STAGE_CUBE, STAGE_TWO, of_unit};
 use crate::vertex::attribute;
 
@@ -194,7 +196,7 @@ fn stages(own: &impl Fn(u32) -> Option<u32>) -> StateWord {
         let number = |method| own_of_unit(method, unit).unwrap_or(0);
         let (enable, format) = (number(class::SET_TEXTURE_CONTROL0), number(class::SET_TEXTURE_FORMAT));
         let Some(control) = own(enable) else { return StateWord::Unset(enable) };
-        if control >> 30 & 1 != 0 {
+        if ENABLE.is_set(control) {
             let cube = own(format).is_some_and(|format| format >> 2 & 1 != 0);
             word |= if cube { STAGE_CUBE } else { STAGE_TWO } << (5 * unit);
         }

@@ -11,6 +11,7 @@ use ninebit::state::{
     Buffer, DepthBuffer, Draw, Named, Palette, Rectangle, Scene, ShaderOperation, TEXTURE_UNITS, Target, Texture,
     TextureFormat, TextureImage, TextureKind, TextureUnit, VertexDepths,
 };
+use ninebit_program::registers::unit::ENABLE;
 use ninebit_scene::clear::Clear;
 
 use crate::class::{self, Family};
@@ -336,7 +337,7 @@ impl Builder {
         for index in 0..TEXTURE_UNITS {
             let mut stage = shader::stage(view, index);
             if stage.operation.samples() {
-                let enabled = view.get(class::of_unit(class::SET_TEXTURE_CONTROL0, index)) >> 30 & 1 != 0;
+                let enabled = ENABLE.is_set(view.get(class::of_unit(class::SET_TEXTURE_CONTROL0, index)));
                 draw.textures[index] = if enabled { self.unit(view, memory, index, draw.target) } else { None };
                 if draw.textures[index].is_none() {
                     stage.operation = ShaderOperation::None;

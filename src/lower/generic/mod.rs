@@ -6,6 +6,7 @@
 
 mod modules;
 mod pieces;
+mod print;
 mod text;
 mod whole;
 

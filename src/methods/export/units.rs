@@ -100,7 +100,7 @@ fn operation(
 /// Returns SET_TEXTURE_CONTROL0 of a unit that samples.
 fn control(unit: &TextureUnit) -> u32 {
     let key = unit.color_key.map_or(0, |key| code(&COLOR_KEYS, key.mode));
-    1 << 30
+    ENABLE.put(1)
         | MIN_LOD.put(unit.min_lod as u32)
         | MAX_LOD.put(unit.max_lod as u32)
         | ANISOTROPY.put(unit.anisotropy.ilog2())

@@ -91,6 +91,8 @@ pub const SIZES: [Field; 3] = [Field::new(20, 4), Field::new(24, 4), Field::new(
 pub const RECTANGLE: [Field; 2] = [Field::new(16, 16), Field::new(0, 16)];
 /// Fields of `texture_address`: the modes along s, t and r.
 pub const MODES: [Field; 3] = [Field::new(0, 4), Field::new(8, 4), Field::new(16, 4)];
+/// Field of `texture_control0`: whether the unit has a texture.
+pub const ENABLE: Field = Field::new(30, 1);
 /// Fields of `texture_control0`: the colour key's mode, the binary logarithm of the anisotropy, the largest and the least lod.
 pub const COLOR_KEY: Field = Field::new(0, 2);
 /// See [`COLOR_KEY`].

@@ -13,7 +13,8 @@ use ninebit_program::registers::layout::Field as Bits;
 use ninebit_program::registers::unit as words;
 
 use super::pieces::{Maker, Piece};
-use super::text::{Printer, field, pieces_text, translated};
+use super::print::pieces_text;
+use super::text::{Printer, field, translated};
 use super::{Generic, Sources};
 use crate::code::Line;
 use crate::draw::QUAD;
@@ -52,7 +53,8 @@ const STAGES: [(&str, u32, ShaderOperation); 15] = {
 };
 
 /// The fields of words, with their names in the text.
-const FIELDS: [(&str, Bits); 28] = [
+const FIELDS: [(&str, Bits); 29] = [
+    ("ENABLE", words::ENABLE),
     ("CUBE", words::CUBE),
     ("BORDER_COLOR", words::BORDER_COLOR),
     ("DIMENSIONS", words::DIMENSIONS),
@@ -174,7 +176,11 @@ fn set_ups(generic: &Generic) -> [Setup; 2] {
     })
 }
 
-const DECLARATIONS: &str = "/* Sets up a triangle. Its offset (DEP-5) and its point are 0 and none: whoever draws sets them. */
+const DECLARATIONS: &str = "/* Words of units, fog, depth and stencil are those of the NV20 class, whichever the chip. Of fog with mode 0 the vertices have factors. A unit
+   without a texture, or whose stage in SHADER_STAGE_PROGRAM is 0, is off. Windows, patterns, clipping and culling are whoever draws', and so is
+   what a depth range does to whole triangles. */
+
+/* Sets up a triangle. Its offset (DEP-5) and its point are 0 and none: whoever draws sets them. */
 void nb_set_up(const struct nb_state *state, const struct ninebit_vertex vertex[3], struct ninebit_triangle *triangle);
 /* Whether a triangle covers a pixel (RAS-2, RAS-3). */
 int nb_covers(const struct ninebit_triangle *triangle, int32_t x, int32_t y);

@@ -7,11 +7,12 @@ use ninebit::texture::planned::PlannedUnit;
 
 use crate::binary::Called;
 use crate::code::{ANY_BINARY, EXPONENT, Kind, Range};
+use crate::coordinates::Facing;
 use crate::generic::pieces::Reader;
 use crate::helper::Helper;
 use crate::input::{Input, Local};
 use crate::number::Number;
-use crate::place::{Facing, Place, Unit};
+use crate::place::{Place, Unit};
 use crate::triangle::ANY_UNIT;
 use crate::truth::Truth;
 use crate::whole::{Interpolator, Sample};

@@ -9,10 +9,11 @@ use ninebit::texture::planned::PlannedUnit;
 use ninebit_program::registers::unit::{ADDRESS_MODES, COLOR_KEYS, FORMATS, MIN_FILTERS};
 
 use super::reader::{AT, LANE, plain, planned};
+use crate::coordinates::{log2_ratio, pairs_of_quad};
 use crate::generic::pieces::{Case, Maker, Piece, Reader, piece};
 use crate::input::Input;
 use crate::number::Number;
-use crate::place::{Place, Projection, log2_ratio, pairs_of_quad, side};
+use crate::place::{Place, Projection, side};
 use crate::texel::Sampler;
 
 /// How a unit gets its coordinates.

@@ -25,7 +25,7 @@ for draw in range(draws):
     if not len(triangles):
         continue
     width, pixels, buffers = surfaces[target]
-    bounds = struct.pack("<8I", width, pixels // width, *window, len(triangles) // 176, 0)
+    bounds = struct.pack("<8I", width, pixels // width, *window, len(triangles) // 184, 0)
     read = [device.create_buffer_with_data(data=data, usage=STORAGE) for data in (bounds, triangles.tobytes(), memory.tobytes())]
     pipeline = device.create_compute_pipeline(
         layout=device.create_pipeline_layout(bind_group_layouts=[layout]), compute={"module": module, "entry_point": f"main{draw}"}

@@ -1,0 +1,259 @@
+//! The coordinates at which a unit samples.
+
+use ninebit::number::{Integer, Register as _};
+use ninebit::raster::interpolate::FARTHEST;
+use ninebit::raster::stroke::Figure;
+use ninebit::state::*;
+use ninebit::texture::anisotropy::{MAX_PAIRS, Pairs, pairs};
+use ninebit::texture::cube::{Face, major_axis};
+use ninebit::texture::planned::PlannedUnit;
+use ninebit::texture::{lod, shader};
+
+use crate::binary::{Called, counted};
+use crate::code::{Code, Operand, Operation};
+use crate::helper::Helper;
+use crate::input::Input;
+use crate::number::Number;
+use crate::place::{Place, Projection, Unit};
+use crate::triangle::{Field, name_of};
+use crate::truth::Truth;
+use crate::whole::{Sample, Whole};
+
+/// A face of a cube map.
+#[derive(Clone, Copy)]
+pub(crate) struct Facing<'a> {
+    pub(crate) is_x: Truth<'a>,
+    pub(crate) is_y: Truth<'a>,
+    pub(crate) negative: Truth<'a>,
+}
+
+impl<'a> Facing<'a> {
+    /// Returns the number of the face.
+    pub(crate) fn number(self) -> Number<'a> {
+        let axis = Number::ZERO.or(self.is_x, Number::Constant(2).or(self.is_y, Number::Constant(4)));
+        axis + self.negative.number()
+    }
+}
+
+/// A direction on a face: sc, tc, |ma|.
+type OnFace<'a> = [Called<'a>; 3];
+
+impl<'a> Unit<'a, '_, '_> {
+    pub(crate) fn component(&self, sample: &Sample<'a>, n: usize) -> Called<'a> {
+        let of = self.interpolator.linear(|part| Field::Coordinate(self.unit.index, n, part));
+        of.at(sample.b)
+    }
+
+    /// Returns the direction into a cube map.
+    pub(crate) fn direction(&self, place: Place<'a>, sample: &Sample<'a>) -> Option<[Called<'a>; 3]> {
+        match place {
+            Place::Own(Projection::Direction) => Some([0, 1, 2].map(|n| self.component(sample, n))),
+            Place::Vector(vector) => Some(vector),
+            _ => None,
+        }
+    }
+
+    /// TEX-12: returns the face that a direction meets.
+    pub(crate) fn facing(&self, direction: [Called<'a>; 3]) -> Facing<'a> {
+        let code = self.interpolator.code;
+        code.by("TEX-12");
+        let [x, y, z] = direction.map(|n| n.parts(code, (-(1 << 26), 1 << 26)));
+        let [is_x, is_y] = major_axis([x.is_no_smaller(y), x.is_no_smaller(z), y.is_no_smaller(z)]);
+        let major = x.mantissa.or(is_x, y.mantissa.or(is_y, z.mantissa));
+        Facing { is_x, is_y, negative: major.is_negative() }
+    }
+
+    /// TEX-12: returns sc, tc and |ma| of a direction on a face.
+    fn on_face(&self, direction: [Called<'a>; 3], facing: Facing<'a>) -> OnFace<'a> {
+        let Facing { is_x, is_y, negative } = facing;
+        let code = self.interpolator.code;
+        code.by("TEX-12");
+        let parts = direction.map(|n| n.parts(code, (-(1 << 26), 1 << 26)));
+        [0, 1, 2].map(|n: usize| {
+            // Both faces of an axis take the same axes.
+            let of = |axis: usize| {
+                let [positive, other] = [0, 1].map(|side| Face::ALL[2 * axis + side].components()[n]);
+                let sign = if positive.negative == other.negative {
+                    Truth::Known(positive.negative)
+                } else {
+                    negative ^ Truth::Known(positive.negative)
+                };
+                (parts[positive.axis], sign.number())
+            };
+            let ((x, of_x), (y, of_y), (z, of_z)) = (of(0), of(1), of(2));
+            let number = x.or(is_x, y.or(is_y, z));
+            let sign = of_x.or(is_x, of_y.or(is_y, of_z));
+            let is_negated = !sign.is_zero();
+            let number = number.negated().or(is_negated, number);
+            Called::from_line(code, code.make(Operation::Binary(number.mantissa.operand(), number.exponent.operand())))
+        })
+    }
+
+    pub(crate) fn floored(&self, value: Called<'a>, size: Number<'a>) -> Number<'a> {
+        let code = self.interpolator.code;
+        let of = [value.operand(code), size.operand(), Operand::Constant(8), Operand::Constant(1 << 24)];
+        counted(code, Helper::Floor, &of)
+    }
+
+    pub(crate) fn ratio(&self, s: Called<'a>, q: Called<'a>, size: Number<'a>) -> Number<'a> {
+        let code = self.interpolator.code;
+        counted(code, Helper::Ratio, &[s.operand(code), q.operand(code), size.operand()])
+    }
+
+    /// Returns u and v on a level in 1/256 texel.
+    pub(crate) fn coordinates(&self, sides: [Number<'a>; 2], facing: Option<Facing<'a>>) -> [Number<'a>; 2] {
+        let code = self.interpolator.code;
+        let named = |uv: [Number<'a>; 2]| {
+            let n = self.unit.index;
+            [0, 1].map(|axis: usize| {
+                code.name(uv[axis].operand(), || name_of(n, ["u", "v"][axis]));
+                uv[axis]
+            })
+        };
+        let (place, sample) = (self.place, self.sample);
+        if let (Some(facing), Some(direction)) = (facing, self.direction(place, sample)) {
+            let [s, t, m] = self.on_face(direction, facing).map(|n| n.operand(code));
+            let of = |n: Operand, size: Number<'a>| counted(code, Helper::Face, &[n, m, size.operand()]);
+            return named([of(s, sides[0]), of(t, sides[1])]);
+        }
+        let at = |n: usize| self.component(sample, n);
+        let own = |n: usize| match place {
+            Place::Own(Projection::Ratio) => self.ratio(at(n), self.component(sample, 3), sides[n]),
+            Place::Moved(offsets) => self.moved(at(n), offsets[n], sides[n].operand(), (8, 1 << 24)),
+            Place::Bytes(bytes, scale) => {
+                code.by("TSH-6");
+                shader::dependent(bytes[n], sides[n], scale)
+            }
+            Place::Floats(floats) => counted(code, Helper::Float, &[floats[n].operand(), sides[n].operand()]),
+            Place::Own(_) | Place::Vector(_) => self.floored(at(n), sides[n]),
+        };
+        let pixel = [Input::X, Input::Y].map(|input| self.interpolator.input(input));
+        let sides = sides.map(Number::operand);
+        named([0, 1].map(|n: usize| self.of_figure((n, pixel[n]), (sides[n], 8), || own(n))))
+    }
+
+    /// Returns a coordinate in a point at a column or a row, or what else a figure has, in 2^-`power` texel.
+    fn of_figure(
+        &self,
+        (axis, pixel): (usize, Number<'a>),
+        (side, power): (Operand, i64),
+        other: impl FnOnce() -> Number<'a>,
+    ) -> Number<'a> {
+        match self.is_point {
+            Truth::Known(false) => other(),
+            // Only points are drawn, or some other figures too.
+            Truth::Known(true) => self.of_point(axis, pixel, side, power),
+            is_point => self.of_point(axis, pixel, side, power).or(is_point, other()),
+        }
+    }
+
+    /// PNT-2: returns a coordinate in a point at a column or a row, in 2^-`power` texel.
+    fn of_point(&self, axis: usize, pixel: Number<'a>, side: Operand, power: i64) -> Number<'a> {
+        let (code, field) = (self.interpolator.code, |field| self.interpolator.input(Input::Triangle(field)));
+        code.by("PNT-2");
+        let distance = pixel * Number::Constant(16) + Number::Constant(8) - field(Field::Sprite(axis));
+        let size = Number::greatest(field(Field::SpriteSize), Number::ZERO);
+        let of = [distance.operand(), size.operand(), side, Operand::Constant(power)];
+        counted(code, Helper::Sprite, &of)
+    }
+
+    /// TSH-7: returns a coordinate that is displaced, in 2^-`power` texel.
+    fn moved(&self, value: Called<'a>, offset: Number<'a>, side: Operand, (power, limit): (i64, i64)) -> Number<'a> {
+        let code = self.interpolator.code;
+        let of = [value.operand(code), offset.operand(), side, Operand::Constant(power), Operand::Constant(limit)];
+        counted(code, Helper::Moved, &of)
+    }
+
+    /// TEX-11: returns u and v of the quad's pixels in 1/65536 texel of level 0, and whether one of them lies behind the viewer.
+    pub(crate) fn coordinates_of_quad(&self) -> ([[Number<'a>; 2]; 3], Truth<'a>) {
+        let one = Number::Constant(1);
+        let [x, y] = self.quad;
+        let sides = self.unit.scale(&self.unit.levels[0]).map(|side| Number::Constant(side.into()));
+        let pixels = [[x, y], [x + one, y], [x, y + one]];
+        let samples = pixels.map(|[x, y]| self.interpolator.sample_at(x, y));
+        let places = samples.each_ref().map(|sample| (self.elsewhere)(sample));
+        let facing = self.direction(places[0], &samples[0]).map(|direction| self.facing(direction));
+        let mut behind = Truth::Known(false);
+        let quad = [0, 1, 2].map(|n: usize| {
+            let at = Unit { sample: &samples[n], place: places[n], ..*self };
+            let (uv, is_behind) = at.far_coordinates(pixels[n], sides, facing);
+            behind = behind | is_behind;
+            uv
+        });
+        (quad, behind)
+    }
+
+    /// TEX-11: returns u and v of a quad's pixel in 1/65536 texel of level 0, and whether it lies behind the viewer.
+    pub(crate) fn far_coordinates(
+        &self,
+        pixel: [Number<'a>; 2],
+        sides: [Number<'a>; 2],
+        facing: Option<Facing<'a>>,
+    ) -> ([Number<'a>; 2], Truth<'a>) {
+        let (code, sample, place) = (self.interpolator.code, self.sample, self.place);
+        let sides = sides.map(Number::operand);
+        let is_positive = |n: Called<'a>| Number::ZERO.is_below(n.parts(code, crate::code::MANTISSA).mantissa);
+        code.by("TEX-11");
+        let mut behind = !is_positive(sample.sum);
+        if let (Some(facing), Some(direction)) = (facing, self.direction(place, sample)) {
+            let [s, t, m] = self.on_face(direction, facing);
+            behind = behind | !is_positive(m);
+            let at = [s, t].map(|n| n.operand(code));
+            let of = |n: usize| counted(code, Helper::FarFace, &[at[n], m.operand(code), sides[n]]);
+            return ([0, 1].map(of), behind);
+        }
+        let q = (matches!(place, Place::Own(Projection::Ratio))).then(|| self.component(sample, 3));
+        if let Some(q) = q {
+            behind = behind | (!is_positive(q) & !self.is_point);
+        }
+        let at = |n: usize| self.component(sample, n);
+        let own = |n: usize| match (place, q) {
+            (_, Some(q)) => counted(code, Helper::FarRatio, &[at(n).operand(code), q.operand(code), sides[n]]),
+            (Place::Moved(offsets), _) => self.moved(at(n), offsets[n], sides[n], (16, FARTHEST)),
+            (Place::Bytes(bytes, scale), _) => {
+                code.by("TSH-6");
+                shader::dependent(bytes[n], Number::new(code, sides[n]).up(Number::Constant(8)), scale)
+            }
+            (Place::Floats(floats), _) => counted(code, Helper::FarFloat, &[floats[n].operand(), sides[n]]),
+            (Place::Own(_) | Place::Vector(_), _) => {
+                let limit = Operand::Constant(FARTHEST);
+                counted(code, Helper::FarFloor, &[at(n).operand(code), sides[n], Operand::Constant(16), limit])
+            }
+        };
+        ([0, 1].map(|n: usize| self.of_figure((n, pixel[n]), (sides[n], 16), || own(n))), behind)
+    }
+}
+
+/// TEX-10, TEX-11: returns the lod of a quad, of which a pixel may lie behind the viewer.
+pub(crate) fn log2_ratio<'a>(code: &'a Code, quad: [[Number<'a>; 2]; 3], behind: Truth<'a>) -> Number<'a> {
+    let of: Vec<Operand> = quad.as_flattened().iter().map(|n| n.operand()).collect();
+    Number::Constant(lod::LEAST.into()).or(behind, counted(code, Helper::Level, &of))
+}
+
+/// TEX-17: returns the pairs of taps of a quad: offset and weight.
+pub(crate) fn pairs_of_quad<'a>(
+    quad: [[Number<'a>; 2]; 3],
+    behind: Truth<'a>,
+    limit: Number<'a>,
+) -> [([Number<'a>; 2], Number<'a>); MAX_PAIRS] {
+    let Pairs { offsets, weights, .. } = pairs(quad, limit);
+    [0, 1, 2, 3].map(|pair: usize| {
+        let weight = Number::Constant(if pair == 0 { 128 } else { 0 }).or(behind, weights[pair]).within(0, 128);
+        (offsets[pair].map(|offset| Number::ZERO.or(behind, offset).within(-(1 << 22), 1 << 22)), weight)
+    })
+}
+
+/// Returns whether the figures of a draw are points that give a unit coordinates.
+pub(crate) fn is_point<'a>(whole: &Whole<'a, '_>, unit: &PlannedUnit) -> Truth<'a> {
+    let draw = whole.planned;
+    if !(draw.point_sprite && unit.index == SPRITE_UNIT) {
+        return Truth::Known(false);
+    }
+    let triangles = &draw.assembly.triangles;
+    let is_point = |n: usize| triangles.figure(n) == Figure::Point;
+    match ((0..triangles.len()).any(is_point), (0..triangles.len()).all(is_point)) {
+        (false, _) => Truth::Known(false),
+        (true, true) => Truth::Known(true),
+        (true, false) => !whole.input(Input::Triangle(Field::SpriteSize)).is_negative(),
+    }
+}
