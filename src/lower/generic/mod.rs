@@ -8,6 +8,7 @@ mod modules;
 mod pieces;
 mod print;
 mod text;
+mod translation;
 mod whole;
 
 use ninebit::state::{Policies, Profile};

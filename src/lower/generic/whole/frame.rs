@@ -50,8 +50,12 @@ fn fog_cases(maker: &Maker, of: impl for<'a> Fn(&mut Reader<'a>, Option<FogMode>
     cases
 }
 
-pub(super) fn pieces(maker: &Maker) -> Vec<Piece> {
-    let one = |name, about, parameters, array, case| piece(name, about, parameters, vec![case]).filling(array);
+/// Makes a piece of one case that fills an array.
+fn one(name: &'static str, about: &'static str, parameters: &'static str, array: &'static str, case: Case) -> Piece {
+    piece(name, about, parameters, vec![case]).filling(array)
+}
+
+fn attributes(maker: &Maker) -> Vec<Piece> {
     let edges = maker.case(0, "", |reader| {
         let of = reader.interpolator();
         let [x, y] = [Input::X, Input::Y].map(|input| of.input(input));
@@ -65,6 +69,31 @@ pub(super) fn pieces(maker: &Maker) -> Vec<Piece> {
     });
     let fog = fog_cases(maker, |reader, mode| vec![fog_byte(reader, mode)]);
     let fixed = fog_cases(maker, |_, mode| vec![Number::Constant(mode.map_or(-1, |mode| not_finite(mode).into()))]);
+    let sample = "@triangle, @in @binary b[4]";
+    vec![
+        one("nb_edges", "The edge functions of a pixel.", "@triangle, @int x, @int y", "e[3]", edges).wide(),
+        one(
+            "nb_weights",
+            "The weights of a pixel, and the sum of its edge numbers.",
+            "@triangle, @in @long e[3]",
+            "b[4]",
+            weights,
+        )
+        .binary(),
+        one("nb_colors", "The primary and the secondary colour.", sample, "colors[8]", colors),
+        piece(
+            "nb_fog",
+            "The fog factor as a byte, by the mode.",
+            "@triangle, @in @binary b[4], @long p0, @long p1",
+            fog,
+        )
+        .by("mode"),
+        piece("nb_fixed_fog", "The fog byte where a coordinate is not finite; -1 if there is none.", "", fixed)
+            .by("mode"),
+    ]
+}
+
+fn depths(maker: &Maker) -> Vec<Piece> {
     let between = maker.flagged(["z", "w"], |reader, w_buffer| {
         reader.parts(reader.interpolator().depth_between(w_buffer, reader.all(E, EDGE)))
     });
@@ -92,6 +121,26 @@ pub(super) fn pieces(maker: &Maker) -> Vec<Piece> {
             vec![depth::stored(format, reader.wide(V)).within(0, format.largest().into())]
         },
     );
+    vec![
+        piece("nb_depth", "z or w: mantissa and exponent.", "@triangle, @in @long e[3]", between)
+            .by("w_buffer")
+            .filling("v[2]")
+            .wide(),
+        one("nb_moved_depth", "A depth with the triangle's offset.", "@triangle, @in @long v[2]", "moved[2]", moved)
+            .wide(),
+        one(
+            "nb_limited_depth",
+            "A depth within its range, and whether it was outside.",
+            "@in @long v[2], @long lowest, @long highest",
+            "limited[3]",
+            limited,
+        )
+        .wide(),
+        piece("nb_depth_word", "The word of a depth.", "@in @long v[2]", words).by("format"),
+    ]
+}
+
+fn tests(maker: &Maker) -> Vec<Piece> {
     let operated = maker.cases(
         |operation: StencilOperation| STENCIL_OPERATIONS[operation as usize],
         |reader, operation| {
@@ -121,43 +170,8 @@ pub(super) fn pieces(maker: &Maker) -> Vec<Piece> {
             vec![reader.holds(a.compared(*function, b))]
         })
     });
-    let sample = "@triangle, @in @binary b[4]";
     let outcome = "@int kept, @int stencil_passed, @int depth_passed, @in @int stencils[3], @int held_stencil, @int depth, @int held_depth";
     vec![
-        one("nb_edges", "The edge functions of a pixel.", "@triangle, @int x, @int y", "e[3]", edges).wide(),
-        one(
-            "nb_weights",
-            "The weights of a pixel, and the sum of its edge numbers.",
-            "@triangle, @in @long e[3]",
-            "b[4]",
-            weights,
-        )
-        .binary(),
-        one("nb_colors", "The primary and the secondary colour.", sample, "colors[8]", colors),
-        piece(
-            "nb_fog",
-            "The fog factor as a byte, by the mode.",
-            "@triangle, @in @binary b[4], @long p0, @long p1",
-            fog,
-        )
-        .by("mode"),
-        piece("nb_fixed_fog", "The fog byte where a coordinate is not finite; -1 if there is none.", "", fixed)
-            .by("mode"),
-        piece("nb_depth", "z or w: mantissa and exponent.", "@triangle, @in @long e[3]", between)
-            .by("w_buffer")
-            .filling("v[2]")
-            .wide(),
-        one("nb_moved_depth", "A depth with the triangle's offset.", "@triangle, @in @long v[2]", "moved[2]", moved)
-            .wide(),
-        one(
-            "nb_limited_depth",
-            "A depth within its range, and whether it was outside.",
-            "@in @long v[2], @long lowest, @long highest",
-            "limited[3]",
-            limited,
-        )
-        .wide(),
-        piece("nb_depth_word", "The word of a depth.", "@in @long v[2]", words).by("format"),
         piece("nb_compared", "A comparison.", "@int a, @int b", compared).by("function"),
         piece(
             "nb_shadow_compared",
@@ -176,4 +190,8 @@ pub(super) fn pieces(maker: &Maker) -> Vec<Piece> {
             settled,
         ),
     ]
+}
+
+pub(super) fn pieces(maker: &Maker) -> Vec<Piece> {
+    [attributes(maker), depths(maker), tests(maker)].into_iter().flatten().collect()
 }

@@ -14,7 +14,8 @@ use ninebit_program::registers::unit as words;
 
 use super::pieces::{Maker, Piece};
 use super::print::pieces_text;
-use super::text::{Printer, field, translated};
+use super::text::{Printer, field};
+use super::translation::translated;
 use super::{Generic, Sources};
 use crate::code::Line;
 use crate::draw::QUAD;

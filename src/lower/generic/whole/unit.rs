@@ -311,6 +311,29 @@ fn texels(maker: &Maker) -> Vec<Piece> {
         };
         (0..4).map(lane).collect()
     });
+    vec![
+        piece(
+            "nb_format",
+            "A format: in rows; 1 or 2 if it has halves; 1 to 4 if it is a depth; whether a key compares alpha.",
+            "",
+            traits,
+        )
+        .by("code")
+        .filling("of[4]"),
+        piece("nb_inside", "The lanes of a texel: R, G, B, A, or halves.", "@uint word", inside)
+            .by("code")
+            .filling("lanes[4]"),
+        piece("nb_beyond", "The lanes of the border colour.", "@in @int color[4]", beyond)
+            .by("halves")
+            .filling("lanes[4]"),
+        piece("nb_read", "A lane, which may be signed.", "@int lane, @int is_signed", read).by("halves"),
+        piece("nb_signed", "The lanes that are signed, of the channels that are.", "@in @int signs[4]", signed)
+            .by("halves")
+            .filling("lanes[4]"),
+    ]
+}
+
+fn filters(maker: &Maker) -> Vec<Piece> {
     let mixed = maker.case(0, "", |reader| {
         reader.code.by("TEX-6");
         let (texels, [u, v]) = (reader.all(TEXELS, LANE), reader.all(["u", "v"], (0, 255)));
@@ -349,24 +372,6 @@ fn texels(maker: &Maker) -> Vec<Piece> {
         sampler.doubled(reader.all(LANES, (-128, 255)), reader.truths(SIGNS), reader.code).to_vec()
     });
     vec![
-        piece(
-            "nb_format",
-            "A format: in rows; 1 or 2 if it has halves; 1 to 4 if it is a depth; whether a key compares alpha.",
-            "",
-            traits,
-        )
-        .by("code")
-        .filling("of[4]"),
-        piece("nb_inside", "The lanes of a texel: R, G, B, A, or halves.", "@uint word", inside)
-            .by("code")
-            .filling("lanes[4]"),
-        piece("nb_beyond", "The lanes of the border colour.", "@in @int color[4]", beyond)
-            .by("halves")
-            .filling("lanes[4]"),
-        piece("nb_read", "A lane, which may be signed.", "@int lane, @int is_signed", read).by("halves"),
-        piece("nb_signed", "The lanes that are signed, of the channels that are.", "@in @int signs[4]", signed)
-            .by("halves")
-            .filling("lanes[4]"),
         piece("nb_mixed", "Four texels mixed.", "@in @int t[4], @int u, @int v", vec![mixed]),
         piece("nb_between", "Two levels mixed.", "@int a, @int b, @int weight", vec![between]),
         piece("nb_summed", "A sum of taps in 1/256.", "@int sum", vec![summed]),
@@ -385,5 +390,5 @@ fn texels(maker: &Maker) -> Vec<Piece> {
 }
 
 pub(super) fn pieces(maker: &Maker) -> Vec<Piece> {
-    [coordinates(maker), levels(maker), texels(maker)].into_iter().flatten().collect()
+    [coordinates(maker), levels(maker), texels(maker), filters(maker)].into_iter().flatten().collect()
 }
