@@ -1,10 +1,9 @@
-//! What C hands over: texts, arrays, scenes, and places for results.
+//! What C hands over: texts, arrays, and places for results.
 
 use std::ffi::{CStr, CString, c_char};
 use std::ptr;
 
-use super::NinebitScene;
-use super::call::Failure;
+use super::failure::Failure;
 
 /// Writes through a pointer, unless it is null.
 ///
@@ -73,13 +72,4 @@ pub(crate) fn checked<T>(first: *const T, count: usize, what: &str) -> Result<()
         Some(bytes) if isize::try_from(bytes).is_ok() => Ok(()),
         _ => Err(Failure::argument(format!("{what} cannot have {count} elements"))),
     }
-}
-
-/// Borrows a scene of C; null is an error.
-///
-/// # Safety
-/// `scene` is null, or came from this library and has not been freed.
-pub(crate) unsafe fn scene_of<'a>(scene: *const NinebitScene) -> Result<&'a NinebitScene, Failure> {
-    // SAFETY: the caller promises that it is one of ours where it is not null; nobody ever changes one.
-    unsafe { scene.as_ref() }.ok_or_else(|| Failure::argument("the scene is null"))
 }

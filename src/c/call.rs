@@ -5,33 +5,9 @@ use std::{ptr, thread};
 
 use ninebit::faults::{self, Operation};
 use ninebit_files::catch_panic::{Panic, catch_panic};
-use ninebit_scene::{ErrorKind, SceneError};
 
-use super::NinebitStatus;
 use super::borrow::{put, text};
-
-/// The status and the message of a call that failed.
-pub(crate) struct Failure {
-    pub(crate) status: NinebitStatus,
-    pub(crate) text: String,
-}
-
-impl Failure {
-    pub(crate) fn argument(text: impl Into<String>) -> Failure {
-        Failure { status: NinebitStatus::Argument, text: text.into() }
-    }
-}
-
-impl From<SceneError> for Failure {
-    fn from(error: SceneError) -> Failure {
-        let status = match error.kind() {
-            ErrorKind::Invalid => NinebitStatus::Invalid,
-            ErrorKind::Missing => NinebitStatus::Missing,
-            ErrorKind::Limit => NinebitStatus::Limit,
-        };
-        Failure { status, text: error.render(false) }
-    }
-}
+use super::failure::{Failure, NinebitStatus};
 
 /// Size of the stack on which scenes are read, drawn and traced, in bytes. The caller's may be small: threads of musl have 128 KiB. A render takes
 /// some 370 KiB of it, whatever it draws, and notation that is nested as deeply as it may be 50 KiB.

@@ -7,6 +7,9 @@
 
 mod borrow;
 mod call;
+mod failure;
+
+pub use failure::NinebitStatus;
 
 use std::ffi::{CStr, CString, c_char};
 use std::path::Path;
@@ -22,26 +25,9 @@ use ninebit_program::registers::{RegisterWords, Word, decode};
 use ninebit_report::trace_json;
 use ninebit_scene::LoadedScene;
 
-use borrow::{array, array_mut, put, scene_of, text, text_of};
-use call::{Failure, call, on_own_stack};
-
-/// Status of a call. The numbers are the exit statuses of the program.
-#[repr(i32)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NinebitStatus {
-    /// The call succeeded.
-    Ok = 0,
-    /// An argument is wrong: a null pointer, a number that is too large, or a buffer of the wrong size.
-    Argument = 2,
-    /// A scene, one of its files, or the register words are invalid.
-    Invalid = 3,
-    /// A file is missing.
-    Missing = 4,
-    /// A limit has been exceeded, or the system has no thread left.
-    Limit = 5,
-    /// A fault of this library has occurred.
-    Internal = 6,
-}
+use borrow::{array, array_mut, put, text, text_of};
+use call::{call, on_own_stack};
+use failure::Failure;
 
 /// The chip whose rules apply.
 #[repr(i32)]
@@ -81,6 +67,15 @@ pub struct NinebitMethod {
     pub method: u32,
     /// Word that is written to the method.
     pub word: u32,
+}
+
+/// Borrows a scene of C; null is an error.
+///
+/// # Safety
+/// `scene` is null, or came from this library and has not been freed.
+unsafe fn scene_of<'a>(scene: *const NinebitScene) -> Result<&'a NinebitScene, Failure> {
+    // SAFETY: the caller promises that it is one of ours where it is not null; nobody ever changes one.
+    unsafe { scene.as_ref() }.ok_or_else(|| Failure::argument("the scene is null"))
 }
 
 /// Returns the version of the library, for example `0.1.0`. Do not free it.
