@@ -3,7 +3,7 @@
 //! `cbindgen` makes `include/ninebit.h` from this file; `docs/c.md` shows how it is used. Every function returns a status and writes its results
 //! through pointers. It checks pointers that may be null and lengths that may be wrong, and returns a status for both. No panic crosses the
 //! boundary. What one function allocates, another one frees. A scene never changes after it has been made, so any number of threads may use it at
-//! the same time. Whatever depends on a scene runs on a thread with a [stack of its own](call::STACK).
+//! the same time. Whatever depends on a scene runs on a thread with a stack of its own.
 
 mod borrow;
 mod call;

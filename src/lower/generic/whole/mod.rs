@@ -1,6 +1,6 @@
 //! Prints whole pixels of every draw as one text: the state of a draw is words that are read while it runs.
 //!
-//! [`frame`], [`unit`] and [`stage`] make the pieces, by reading the rules of a draw's function for each value of a field. `pixel.text` passes
+//! [`frame`], [`mod@unit`] and [`stage`] make the pieces, by reading the rules of a draw's function for each value of a field. `pixel.text` passes
 //! values from one piece to the next.
 
 mod frame;
