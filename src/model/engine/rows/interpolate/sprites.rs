@@ -1,4 +1,5 @@
-//! PNT-2 on rows: where the pixels of a point sample its picture. Columns and rows are computed once for each point.
+//! PNT-2 on rows: where the pixels of a point sample its picture. Columns and rows are computed once for all points of a size that lie alike in
+//! their pixels.
 #![allow(clippy::float_arithmetic, reason = "whole numbers that doubles hold")]
 
 use crate::engine::context::TriangleContext;
@@ -12,20 +13,27 @@ use std::ops::Range;
 /// Columns or rows of the largest point, with those beside it that quads have, fit into so many; a power of two.
 const SIDE: usize = 128;
 
+/// Places of a point within its pixel, along an axis.
+const PHASES: usize = 16;
+
+/// Coordinates of the columns or rows of a point.
+#[derive(Clone, Copy, Debug)]
+struct Coordinates {
+    /// The first column or row after that of the point, their number, the point's size, that of the image, and how the sampler reads them.
+    key: [i32; 6],
+    /// In 1/65536 texel if quads are taken, otherwise as [`Place::at`] has them.
+    values: [f64; SIDE],
+}
+
 /// The coordinates that a point gives to a sampler.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Sprite {
     /// The first column and row.
     first: [f64; 2],
-    /// The coordinates in each column and row, in 1/65536 texel if quads are taken, otherwise as [`Place::at`] has them.
-    coordinates: [[f64; SIDE]; 2],
+    phase: [usize; 2],
+    /// Those of each axis and place within the pixel; empty before the first point.
+    coordinates: Vec<[Coordinates; PHASES]>,
     is_set: bool,
-}
-
-impl Default for Sprite {
-    fn default() -> Self {
-        Sprite { first: [0.0; 2], coordinates: [[0.0; SIDE]; 2], is_set: false }
-    }
 }
 
 impl Sprite {
@@ -35,17 +43,26 @@ impl Sprite {
         let sampler = samplers.iter().find(|sampler| sampler.is_sprite && point.figure == Figure::Point);
         self.is_set = sampler.is_some();
         let Some(sampler) = sampler else { return };
+        if self.coordinates.is_empty() {
+            self.coordinates = vec![[Coordinates { key: [0; 6], values: [0.0; SIDE] }; PHASES]; 2];
+        }
         let (at, size) = (context.corners()[1].position, draw.assembly.size_of(context.number));
         let (bits, bias) = if sampler.takes_quads() { (16, 0) } else { (8, sampler.bias()) };
         for (axis, (first, end)) in [point.columns, point.rows].into_iter().enumerate() {
             // Quads have columns and rows beside the point.
             let (first, end) = (first & !1, (end + 1) & !1);
-            let of = |n: i64| {
-                sprite_coordinate(16 * n + 8 - i64::from(at[axis]), size.into(), sampler.sides[axis].into(), bits)
-            };
-            self.first[axis] = first as f64;
-            for (out, n) in self.coordinates[axis].iter_mut().zip(first..end) {
-                *out = (of(n) - i64::from(bias)) as f64;
+            let (pixel, phase) = (at[axis].div_euclid(PHASES as i32), at[axis].rem_euclid(PHASES as i32));
+            (self.first[axis], self.phase[axis]) = (first as f64, phase as usize);
+            let (side, start) = (sampler.sides[axis], first as i32 - pixel);
+            let key = [start, (end - first) as i32, size.into(), side as i32, bits, bias];
+            let coordinates = &mut self.coordinates[axis][phase as usize];
+            if coordinates.key == key {
+                continue;
+            }
+            coordinates.key = key;
+            for (out, n) in coordinates.values.iter_mut().zip(start..start + key[1]) {
+                let d = i64::from(16 * n + 8 - phase);
+                *out = (sprite_coordinate(d, size.into(), side.into(), bits.into()) - i64::from(bias)) as f64;
             }
         }
     }
@@ -64,7 +81,8 @@ impl Sprite {
         }
         let takes_quads = sampler.takes_quads();
         for (axis, of) in [&pixels.x, &pixels.y].into_iter().enumerate() {
-            let (coordinates, first, of) = (&self.coordinates[axis], self.first[axis], &of[lanes.clone()]);
+            let coordinates = &self.coordinates[axis][self.phase[axis]].values;
+            let (first, of) = (self.first[axis], &of[lanes.clone()]);
             // Lanes without a pixel may lie anywhere.
             let coordinate = |n: f64| coordinates[nearest(n - first) as usize % SIDE];
             let (at, fine) = (&mut place.at[axis][lanes.clone()], &mut place.fine[axis][lanes.clone()]);
