@@ -278,7 +278,7 @@ impl Code {
         };
         match *operation {
             Operation::Input(input) => input.range(),
-            Operation::Add(a, b) => wide(&|a, b| a + b, range(a), range(b)),
+            Operation::Add(a, b) | Operation::Plus(a, b) => wide(&|a, b| a + b, range(a), range(b)),
             Operation::Subtract(a, b) => wide(&|a, b| a - b, range(a), range(b)),
             Operation::Multiply(a, b) | Operation::Times(a, b) if a == b => {
                 let (low, high) = range(a);

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, BitAnd, BitOr, Mul, Shl, Shr, Sub};
 
-use ninebit::number::{self, Blend, Factor as _, Register};
+use ninebit::number::{self, Blend, Factor as _, Integer as _, Register};
 use ninebit::state::{CompareFunction, RegisterFloor};
 
 use crate::code::{Code, Operand, Operation, Range, Test, enclosing};
@@ -39,6 +39,7 @@ operators! {
     Word: BitAnd bitand Self, |a, b| a.with(b, Operation::And);
     Word: BitOr bitor Self, |a, b| a.with(b, Operation::Or);
     Word: Mul mul Self, |a, b| a.with(b, Operation::Times);
+    Pair: Add add Self, |a, b| Pair(Word(a.0.with(b.0, Operation::Plus).0.within(0, u32::MAX.into())));
     Word: Shl shl u32, |a, bits| a.with(a, |a, _| Operation::Up(a, bits));
     Word: Shr shr u32, |a, bits| a.with(a, |a, _| Operation::Down(a, bits));
 }
@@ -155,6 +156,28 @@ impl<'a> Blend for Number<'a> {
     }
     fn round8(self) -> Number<'a> {
         (self + Constant(128)).floor_divided(256)
+    }
+}
+
+/// Two bytes of a word, 16 bits apart.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pair<'a>(pub(crate) Word<'a>);
+
+impl<'a> Pair<'a> {
+    /// Returns the lowest byte of each half.
+    pub(crate) fn new(word: Word<'a>) -> Pair<'a> {
+        Pair(word & Word::from(0x00ff_00ff))
+    }
+}
+
+impl<'a> Blend for Pair<'a> {
+    type Weight = Number<'a>;
+    const WHOLE: Number<'a> = Constant(256);
+    fn times(self, weight: Number<'a>) -> Pair<'a> {
+        Pair(self.0 * weight.word())
+    }
+    fn round8(self) -> Pair<'a> {
+        Pair::new((self + Pair(Word::from(0x0080_0080))).0 >> 8)
     }
 }
 

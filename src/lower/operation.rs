@@ -63,6 +63,8 @@ pub enum Operation {
     Or(Operand, Operand),
     /// Product of two words, which is below 2^32.
     Times(Operand, Operand),
+    /// Sum of two words, which is below 2^32.
+    Plus(Operand, Operand),
     /// A word shifted right by a constant.
     Down(Operand, u32),
     /// A word shifted left by a constant; the result is below 2^32.
@@ -118,6 +120,7 @@ impl Operation {
             | Operation::And(..)
             | Operation::Or(..)
             | Operation::Times(..)
+            | Operation::Plus(..)
             | Operation::Down(..)
             | Operation::Up(..)
             | Operation::Fetch(..)
@@ -173,6 +176,7 @@ impl Operation {
             Operation::And(a, b) => Operation::And(name(a), name(b)),
             Operation::Or(a, b) => Operation::Or(name(a), name(b)),
             Operation::Times(a, b) => Operation::Times(name(a), name(b)),
+            Operation::Plus(a, b) => Operation::Plus(name(a), name(b)),
             Operation::Down(a, bits) => Operation::Down(name(a), bits),
             Operation::Up(a, bits) => Operation::Up(name(a), bits),
             Operation::Length(a) => Operation::Length(name(a)),
@@ -200,7 +204,7 @@ impl Operation {
     pub(crate) fn result(&self, value: impl Fn(Operand) -> i64) -> i64 {
         match *self {
             Operation::Input(_) | Operation::Fetch(..) => 0,
-            Operation::Add(a, b) => value(a) + value(b),
+            Operation::Add(a, b) | Operation::Plus(a, b) => value(a) + value(b),
             Operation::Subtract(a, b) => value(a) - value(b),
             Operation::Multiply(a, b) | Operation::Times(a, b) => value(a) * value(b),
             Operation::Least(a, b) => value(a).min(value(b)),

@@ -8,7 +8,7 @@ use ninebit::texture::{color_key, format};
 
 use crate::code::Code;
 use crate::input::{Input, Weight};
-use crate::number::{Number, Word};
+use crate::number::{Number, Pair, Word};
 use crate::truth::Truth;
 
 /// Where the texels of a unit, and the weights of its filter, come from.
@@ -100,6 +100,15 @@ impl<'u> Sampler<'u> {
         (self.loaded(lanes, code), dropped)
     }
 
+    /// Returns which byte of a word each channel is, or `None` for one that is 255, if the filter may treat the bytes of four texels two at a time.
+    fn plain_bytes(&self) -> Option<[Option<u32>; 4]> {
+        use TextureFormat::*;
+        let is_plain = self.border.is_none() && (0..4).all(|lane| !self.unit.signed_lane(lane));
+        let has_bytes = matches!(self.words(), A8R8G8B8 | X8R8G8B8 | A8B8G8R8 | B8G8R8A8 | R8G8B8A8);
+        let numbers = || format::channels(self.words(), 0x0302_0100_u32);
+        (is_plain && has_bytes).then(|| numbers().map(|byte| (byte < 4).then_some(byte)))
+    }
+
     /// Returns the lanes of a level, whose first texel has the number `first`.
     pub(crate) fn filtered<'a>(
         &self,
@@ -115,7 +124,15 @@ impl<'u> Sampler<'u> {
             return lanes(0);
         }
         let of = if first == 0 { [Weight::U, Weight::V] } else { [Weight::NextU, Weight::NextV] };
-        let ([u, v], texels) = (of.map(|weight| texels.weight(weight)), [0, 1, 2, 3].map(lanes));
+        let [u, v] = of.map(|weight| texels.weight(weight));
+        if let Some(bytes) = self.plain_bytes() {
+            let words = [0, 1, 2, 3].map(|at| Word(texels.word(first + at)));
+            code.by("TEX-6");
+            let pairs = [0, 8].map(|down| bilinear(words.map(|word| Pair::new(word >> down)), u, v, |step| step).0);
+            let byte = |at: u32| (pairs[at as usize % 2] >> (at / 2 * 16) & Word::from(255)).number();
+            return bytes.map(|at| at.map_or(Number::ONE, byte));
+        }
+        let texels = [0, 1, 2, 3].map(lanes);
         code.by("TEX-6");
         [0, 1, 2, 3].map(|lane: usize| {
             let all = texels.map(|texel| texel[lane]);

@@ -368,6 +368,7 @@ impl<'f> Body<'f> {
             Operation::Flip(a, bit) => infix(term(a), "^", number(bit)),
             Operation::And(a, b) => infix(term(a), "&", term(b)),
             Operation::Or(a, b) => infix(term(a), "|", term(b)),
+            Operation::Plus(a, b) => infix(term(a), "+", term(b)),
             Operation::Down(a, bits) => infix(term(a), ">>", shift(bits)),
             Operation::Up(a, bits) => infix(term(a), "<<", shift(bits)),
             Operation::Least(a, b) => syntax.call(Call::Least, &self.open([a, b], kind)),
