@@ -7,6 +7,7 @@ use ninebit::raster::weights;
 use crate::body::parts;
 use crate::code::{Code, Kind, Operand, Operation, Range};
 use crate::helper::{Helper, Sign};
+use crate::kind::MANTISSA;
 use crate::number::Number;
 use crate::truth::Truth;
 
@@ -19,8 +20,6 @@ pub(crate) enum Called<'a> {
     Whole(&'a Code, Operand, Sign),
     /// The result of a line.
     Of(&'a Code, Operand, Sign),
-    /// The product of two such results, which becomes a part of the next helper.
-    Product(&'a Code, [Operand; 2], Sign),
 }
 
 impl<'a> Called<'a> {
@@ -39,7 +38,7 @@ impl<'a> Called<'a> {
         match self {
             Called::Known(known) if known.mantissa >= 0 => Sign::Positive,
             Called::Known(_) => Sign::Any,
-            Called::Whole(.., sign) | Called::Of(.., sign) | Called::Product(.., sign) => sign,
+            Called::Whole(.., sign) | Called::Of(.., sign) => sign,
         }
     }
 
@@ -54,7 +53,6 @@ impl<'a> Called<'a> {
             }
             Called::Whole(_, number, _) => code.make(Operation::Binary(number, Operand::Constant(0))),
             Called::Of(_, operand, _) => operand,
-            Called::Product(code, of, sign) => call(code, Helper::Product(sign), &of),
         }
     }
 
@@ -76,10 +74,15 @@ impl<'a> Called<'a> {
         self
     }
 
+    /// Returns a number that the text holds.
+    fn known(self) -> Binary {
+        if let Called::Known(known) = self { known } else { Binary::ONE }
+    }
+
     fn code(self) -> Option<&'a Code> {
         match self {
             Called::Known(_) => None,
-            Called::Whole(code, ..) | Called::Of(code, ..) | Called::Product(code, ..) => Some(code),
+            Called::Whole(code, ..) | Called::Of(code, ..) => Some(code),
         }
     }
 
@@ -97,8 +100,8 @@ impl<'a> Called<'a> {
                 Called::Of(code, call(code, helper(sign), &operands), sign)
             }
             None => {
-                let of = of.iter().map(|number| if let Called::Known(known) = number { *known } else { Binary::ONE });
-                Called::Known(known(&of.collect::<Vec<_>>()))
+                let of: Vec<Binary> = of.iter().map(|number| number.known()).collect();
+                Called::Known(known(&of))
             }
         }
     }
@@ -106,14 +109,6 @@ impl<'a> Called<'a> {
     /// DEP-6: returns 1 less two weights, cut.
     pub(crate) fn cut_rest(code: &'a Code, a: Called<'a>, b: Called<'a>) -> Called<'a> {
         Called::from_line(code, call(code, Helper::CutRest, &[a.operand(code), b.operand(code)]))
-    }
-
-    /// Returns two factors of the number.
-    fn factors(self, code: &'a Code) -> [Operand; 2] {
-        match self {
-            Called::Product(_, of, _) => of,
-            other => [other.operand(code), Called::ONE.operand(code)],
-        }
     }
 }
 
@@ -135,6 +130,9 @@ impl<'a> weights::Number for Called<'a> {
     type Exponent = Number<'a>;
     type Choice = Truth<'a>;
 
+    fn one() -> Called<'a> {
+        Called::ONE
+    }
     fn from_edge(edge: i64) -> Called<'a> {
         Called::Known(Binary::whole(edge))
     }
@@ -145,32 +143,30 @@ impl<'a> weights::Number for Called<'a> {
         match self {
             Called::Whole(code, number, sign) => Called::Of(code, call(code, Helper::Cut(sign), &[number]), sign),
             Called::Known(known) => Called::Known(weights::Number::cut(known)),
-            Called::Of(code, _, sign) | Called::Product(code, _, sign) => {
-                Called::Of(code, call(code, Helper::Product(sign), &self.factors(code)), sign)
+            Called::Of(code, _, sign) => {
+                let Binary { mantissa, exponent } = weights::Number::cut(self.parts(code, MANTISSA));
+                Called::Of(code, code.make(Operation::Binary(mantissa.operand(), exponent.operand())), sign)
             }
         }
     }
-    fn times(self, other: Called<'a>) -> Called<'a> {
-        match (self, other) {
-            (Called::Known(a), Called::Known(b)) => Called::Known(weights::Number::times(a, b)),
-            (Called::Known(Binary::ONE), b) => b,
-            (a, Called::Known(Binary::ONE)) => a,
-            (a, b) => {
-                let Some(code) = a.code().or(b.code()) else { return a };
-                Called::Product(code, [a.operand(code), b.operand(code)], a.sign().max(b.sign()))
-            }
-        }
+    fn product<const BITS: u32>(self, other: Called<'a>) -> Called<'a> {
+        let helper = |sign| if BITS == 24 { Helper::Product(sign) } else { Helper::Share(sign) };
+        Called::of_helper(helper, &[self, other], |of| weights::Number::product::<BITS>(of[0], of[1]))
     }
-    fn aligned_sum<const BITS: i32>(terms: [Called<'a>; 3]) -> Called<'a> {
-        let Some(code) = terms.iter().find_map(|term| term.code()) else {
-            let known = terms.map(|term| if let Called::Known(known) = term { known } else { Binary::ONE });
-            return Called::Known(weights::Number::aligned_sum::<BITS>(known));
-        };
-        let [[a, b], [c, d], [e, f]] = terms.map(|term| term.factors(code));
-        if BITS == 24 {
-            return Called::from_line(code, call(code, Helper::Linear, &[a, b, terms[1].operand(code), e, f]));
-        }
-        Called::from_line(code, call(code, Helper::Depth, &[a, b, c, d, e, f]))
+    fn linear(number: Called<'a>, [first, third]: [[Called<'a>; 2]; 2]) -> Called<'a> {
+        let sign = first[0].sign().max(third[0].sign());
+        Called::of_helper(
+            |_| Helper::Linear(sign),
+            &[first[0], first[1], number, third[0], third[1]],
+            |of| weights::Number::linear(of[2], [[of[0], of[1]], [of[3], of[4]]]),
+        )
+    }
+    fn sum_of_products(factors: [[Called<'a>; 2]; 3]) -> Called<'a> {
+        Called::of_helper(
+            |_| Helper::Depth,
+            factors.as_flattened(),
+            |of| Binary::sum_of_products([[of[0], of[1]], [of[2], of[3]], [of[4], of[5]]]),
+        )
     }
     fn sum_of_edges(edges: [Called<'a>; 3]) -> Called<'a> {
         Called::of_helper(Helper::Sum, &edges, |of| Binary::sum_of_edges([of[0], of[1], of[2]]))
@@ -186,6 +182,9 @@ impl<'a> weights::Number for Called<'a> {
     }
     fn exponent(self) -> Number<'a> {
         match self.code() {
+            Some(code) if self.sign() == Sign::Positive => {
+                Number::new(code, code.make(Operation::Exponent(self.operand(code))))
+            }
             Some(code) => counted(code, Helper::Exponent, &[self.operand(code)]),
             None => match self {
                 Called::Known(known) => Number::Constant(weights::Number::exponent(known)),

@@ -5,7 +5,7 @@ use ninebit::raster::binary::Binary;
 use ninebit::raster::depth;
 use ninebit::raster::interpolate::{FARTHEST, face_coordinate, ratio};
 use ninebit::raster::stroke::sprite_coordinate;
-use ninebit::raster::weights::{Linear, Number as _};
+use ninebit::raster::weights::Number as _;
 use ninebit::texture::coordinates::quad_ratio;
 use ninebit::texture::{lod, shader, single};
 
@@ -28,6 +28,8 @@ pub enum Helper {
     Cut(Sign),
     /// A product to 24 bits.
     Product(Sign),
+    /// The product of a number and a reciprocal to 24 bits.
+    Share(Sign),
     /// The sum of three edge numbers.
     Sum(Sign),
     /// The reciprocal of such a sum.
@@ -36,8 +38,8 @@ pub enum Helper {
     Rest(Sign),
     /// The binary exponent of a positive number.
     Exponent,
-    /// The number between those of three vertices.
-    Linear,
+    /// The number between those of three vertices, and whether weights can be negative.
+    Linear(Sign),
     /// The depth between those of three vertices: three products.
     Depth,
     /// A floor of a number times a size.
@@ -105,19 +107,22 @@ const FAR: i64 = FARTHEST + (1 << 32);
 
 impl Helper {
     /// All helpers, in the order of the variants.
-    pub(crate) const ALL: [Helper; 32] = [
+    pub(crate) const ALL: [Helper; 35] = [
         Helper::Cut(Sign::Positive),
         Helper::Product(Sign::Positive),
+        Helper::Share(Sign::Positive),
         Helper::Sum(Sign::Positive),
         Helper::Reciprocal(Sign::Positive),
         Helper::Rest(Sign::Positive),
         Helper::Cut(Sign::Any),
         Helper::Product(Sign::Any),
+        Helper::Share(Sign::Any),
         Helper::Sum(Sign::Any),
         Helper::Reciprocal(Sign::Any),
         Helper::Rest(Sign::Any),
         Helper::Exponent,
-        Helper::Linear,
+        Helper::Linear(Sign::Positive),
+        Helper::Linear(Sign::Any),
         Helper::Depth,
         Helper::Floor,
         Helper::FarFloor,
@@ -147,6 +152,10 @@ impl Helper {
             Helper::Cut(Sign::Any) => ("signed_cut", "n to its first 24 bits", "WGT-1"),
             Helper::Product(Sign::Positive) => ("product", "a b to its first 24 bits", "WGT-1"),
             Helper::Product(Sign::Any) => ("signed_product", "a b to its first 24 bits", "WGT-1"),
+            Helper::Share(sign) => {
+                let name = if sign == Sign::Any { "signed_share" } else { "share" };
+                (name, "a b, of which b has 29 bits, to its first 24 bits", "WGT-1")
+            }
             Helper::Sum(sign) => {
                 let name = if sign == Sign::Any { "signed_sum" } else { "sum" };
                 (name, "a + b + c, each to the 29th bit of the largest; not 0", "WGT-1")
@@ -158,7 +167,10 @@ impl Helper {
             Helper::Rest(Sign::Positive) => ("rest", "1 - a - b, rounded up to 24 bits", "WGT-1"),
             Helper::Rest(Sign::Any) => ("signed_rest", "1 - a - b, rounded up to 24 bits", "WGT-1"),
             Helper::Exponent => ("exponent", "the binary exponent of a, if that is positive", "WGT-1"),
-            Helper::Linear => ("linear", "a b + c + d e, each term to the 24th bit of the largest", "WGT-1"),
+            Helper::Linear(sign) => {
+                let name = if sign == Sign::Any { "signed_linear" } else { "linear" };
+                (name, "a b + c + d e, each term to the 24th bit of the largest", "WGT-1")
+            }
             Helper::Depth => ("depth", "a b + c d + e f, each term to the 29th bit of the largest", "DEP-1"),
             Helper::Floor => ("floored", "floor(size a 2^power), up to a limit", "INT-2, INT-4"),
             Helper::FarFloor => ("far_floored", "floor(size a 2^power), up to a limit", "TEX-11"),
@@ -201,10 +213,10 @@ impl Helper {
         match self {
             Helper::Cut(Sign::Positive) => &[COVERED],
             Helper::Cut(Sign::Any) => &[EDGE],
-            Helper::Product(_) | Helper::Rest(_) | Helper::CutRest => &[BINARY; 2],
+            Helper::Product(_) | Helper::Share(_) | Helper::Rest(_) | Helper::CutRest => &[BINARY; 2],
             Helper::Sum(_) => &[BINARY; 3],
             Helper::Reciprocal(_) | Helper::Exponent => &[BINARY],
-            Helper::Linear => &[BINARY; 5],
+            Helper::Linear(_) => &[BINARY; 5],
             Helper::Depth => &[BINARY; 6],
             Helper::Floor => &FLOOR,
             Helper::FarFloor => &FAR_FLOOR,
@@ -255,13 +267,22 @@ impl Helper {
         let n = |at: usize| a(at).mantissa;
         Value::Binary(match self {
             Helper::Cut(_) => a(0).cut(),
-            Helper::Product(_) => a(0).times(a(1)).cut(),
+            Helper::Product(_) => a(0).product::<24>(a(1)),
+            Helper::Share(_) => a(0).product::<29>(a(1)),
             Helper::Sum(_) => Binary::sum_of_edges([a(0), a(1), a(2)]),
             Helper::Reciprocal(_) => a(0).reciprocal(),
             Helper::Rest(Sign::Positive) => Binary::rest_of_weights(a(0), a(1)),
             Helper::Rest(Sign::Any) => Binary::rest(a(0), a(1)),
-            Helper::Linear => Linear { first: a(1), second: a(2), third: a(4) }.at([a(0), a(0), a(3)]),
-            Helper::Depth => depth::sum_of_products([[a(0), a(1)], [a(2), a(3)], [a(4), a(5)]]),
+            Helper::Linear(sign) => {
+                let weight = |at: usize| match (sign, a(at)) {
+                    (Sign::Any, weight) => weight,
+                    (Sign::Positive, Binary { mantissa, exponent }) => {
+                        Binary { mantissa: mantissa.within(0, 1 << 24), exponent }
+                    }
+                };
+                Binary::linear(a(2), [[weight(0), a(1)], [weight(3), a(4)]])
+            }
+            Helper::Depth => Binary::sum_of_products([[a(0), a(1)], [a(2), a(3)], [a(4), a(5)]]),
             Helper::Split => Binary::from_bits(n(0)),
             Helper::Rounded => return Value::Number(single::rounded(a(0))),
             Helper::SingleProduct => return Value::Number(single::product(n(0), n(1))),
@@ -311,9 +332,11 @@ impl Helper {
             Helper::Reciprocal(Sign::Any) => MANTISSA,
             Helper::Rest(Sign::Positive) => (0, 1 << 24),
             Helper::Rest(Sign::Any) | Helper::CutRest => (-(1 << 24), 1 << 24),
-            Helper::Product(Sign::Positive) | Helper::Sum(Sign::Positive) => (0, 1 << 29),
-            Helper::Linear | Helper::Depth | Helper::Product(_) | Helper::Sum(_) | Helper::Exponent => {
-                (-(1 << 29), 1 << 29)
+            Helper::Product(Sign::Positive) | Helper::Sum(Sign::Positive) => (0, 1 << 24),
+            Helper::Share(Sign::Positive) => (0, 1 << 29),
+            Helper::Share(Sign::Any) => (-(1 << 29), 1 << 29),
+            Helper::Linear(_) | Helper::Depth | Helper::Product(_) | Helper::Sum(_) | Helper::Exponent => {
+                (-(1 << 24), 1 << 24)
             }
             _ => (-(1 << 26), 1 << 26),
         }

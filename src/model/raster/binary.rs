@@ -13,10 +13,10 @@ pub struct Binary<I = i64> {
 }
 
 impl Binary {
-    /// The number 1.
-    pub const ONE: Binary = Binary { mantissa: 1, exponent: 0 };
+    /// The number 1, normal.
+    pub const ONE: Binary = Binary { mantissa: 1 << 23, exponent: -23 };
 
-    /// Converts a finite number exactly.
+    /// Converts a finite number exactly. It is [normal](Binary::first_bits).
     #[inline(always)]
     pub fn new(n: f32) -> Binary {
         Binary::from_bits(n.to_bits().into())
@@ -45,13 +45,16 @@ impl Binary {
 }
 
 impl<I: Integer> Binary<I> {
-    /// Converts a finite binary32 number, of which bits are given, exactly.
+    /// Converts a finite binary32 number, of which bits are given, exactly. It is [normal](Self::first_bits).
     #[inline(always)]
     pub fn from_bits(bits: I) -> Binary<I> {
         let (field, fraction) = (bits.down(I::new(23)).masked(255), bits.masked((1 << 23) - 1));
         // A subnormal number has the exponent of the least normal one.
         let mantissa = fraction + I::new(0).or(field.is_zero(), I::new(1 << 23));
         let exponent = field.greatest(I::new(1)) - I::new(150);
+        let up = I::new(24) - mantissa.bits();
+        let exponent = I::new(LEAST_TOP).or(mantissa.is_zero(), exponent - up);
+        let mantissa = mantissa.up(up).within(0, (1 << 24) - 1);
         Binary { mantissa: mantissa.negated(!bits.down(I::new(31)).is_zero()), exponent }
     }
 
@@ -76,12 +79,16 @@ impl<I: Integer> Binary<I> {
         (self.mantissa.bits() + self.exponent).or(!self.mantissa.is_zero(), I::new(LEAST_TOP))
     }
 
-    /// Returns the number toward zero to its first `kept` significant bits.
+    /// Returns the number toward zero to its first `kept` significant bits. A mantissa of 24 bits is normal; that of 0 has an exponent below that of all
+    /// other numbers, and so have products with it.
     #[inline(always)]
     pub fn first_bits(self, kept: u32) -> Binary<I> {
-        let dropped = (self.mantissa.bits() - I::new(kept.into())).greatest(I::new(0));
-        let most = (1 << kept) - 1;
-        Binary { mantissa: toward_zero(self.mantissa, dropped).within(-most, most), exponent: self.exponent + dropped }
+        let bits = I::new(LEAST_TOP).or(self.mantissa.is_zero(), self.mantissa.bits());
+        // LEAST_TOP is a multiple of 64.
+        let high = self.mantissa.magnitude().up((I::new(63) - bits).masked(63)).within(0, i64::MAX);
+        let mantissa = high.down(I::new((63 - kept).into())).within(0, (1 << kept) - 1);
+        let exponent = self.exponent + bits - I::new(kept.into());
+        Binary { mantissa: mantissa.negated(self.mantissa.is_negative()), exponent }
     }
 
     /// Returns the number in steps of 2^`unit`, toward zero. It must fit.
@@ -97,6 +104,12 @@ impl<I: Integer> Binary<I> {
     #[inline(always)]
     pub fn negated(self) -> Binary<I> {
         Binary { mantissa: I::new(0) - self.mantissa, ..self }
+    }
+
+    /// Returns the product, which must fit.
+    #[inline(always)]
+    pub(crate) fn times(self, other: Binary<I>) -> Binary<I> {
+        Binary { mantissa: self.mantissa * other.mantissa, exponent: self.exponent + other.exponent }
     }
 
     /// Returns the number times a power of two.
@@ -146,20 +159,18 @@ impl<I: Integer> Binary<I> {
     #[inline(always)]
     pub fn floored(self, scale: I, power: I, limit: I) -> I {
         // Any number but 0 reaches the limit with so many bits more.
-        self.floored_with(scale, power, limit, |_| I::new(24))
+        let far = (self.mantissa * scale).up(I::new(24)).within(-1 << 62, 1 << 62);
+        let floor = far.down((I::new(24) - power - self.exponent).limited(0, 63));
+        floor.least(limit).greatest(I::new(0) - limit)
     }
 
     /// Like [`floored`](Self::floored), for a product of up to 62 bits and limits of up to 2^61.
     #[inline(always)]
     pub fn far_floored(self, scale: I, power: I, limit: I) -> I {
-        self.floored_with(scale, power, limit, |product| (I::new(62) - product.bits()).greatest(I::new(0)))
-    }
-
-    /// `room` is the number of bits by which a product can be shifted, after which it is beyond the limit.
-    #[inline(always)]
-    fn floored_with(self, scale: I, power: I, limit: I, room: impl Fn(I) -> I) -> I {
         let (zero, product, exponent) = (I::new(0), self.mantissa * scale, self.exponent + power);
-        let above = product.up(exponent.least(room(product)).greatest(zero));
+        // After a shift by all free bits the product is beyond the limit.
+        let room = (I::new(62) - product.bits()).greatest(zero);
+        let above = product.up(exponent.least(room).greatest(zero));
         let below = product.down((zero - exponent).limited(0, 63));
         let floor = above.or(zero.is_below(exponent), below);
         floor.least(limit).greatest(zero - limit)

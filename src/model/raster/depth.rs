@@ -207,7 +207,7 @@ pub fn w_depth<N: Number>(e: [N; 3], ratios: [N; 3], w: Linear<N>, cut_rest: imp
 #[inline(always)]
 pub(crate) fn w_of_shares<N: Number>(shares: [N; 3], w: Linear<N>, cut_rest: impl FnOnce(N, N) -> N) -> N {
     let b = completed_by(shares, cut_rest);
-    sum_of_products([[b[0], w.first], [N::from_edge(1), w.second], [b[2], w.third]])
+    N::sum_of_products([[b[0], w.first], [N::one(), w.second], [b[2], w.third]])
 }
 
 /// DEP-6: returns 1 less two weights: cut, not rounded up as in WGT-1.
@@ -225,15 +225,9 @@ fn differences(values: [f32; 3], reference: usize) -> [Binary; 3] {
 /// DEP-1: returns the sum of the reference vertex's number and of the weighted differences from it, each cut at the 29th bit of the largest.
 #[inline(always)]
 pub fn sum_of_terms<N: Number>(b: [N; 3], value: N, differences: [N; 3], is_reference: [N::Choice; 3]) -> N {
-    let one = N::from_edge(1);
+    let one = N::one();
     let term = |k: usize| [one.or(is_reference[k], b[k]), value.or(is_reference[k], differences[k])];
-    sum_of_products([term(0), term(1), term(2)])
-}
-
-/// DEP-1: returns the sum of products, each cut at the 29th bit of the largest.
-#[inline(always)]
-pub fn sum_of_products<N: Number>([[a, b], [c, d], [e, f]]: [[N; 2]; 3]) -> N {
-    N::aligned_sum::<29>([a.times(b), c.times(d), e.times(f)])
+    N::sum_of_products([term(0), term(1), term(2)])
 }
 
 /// DEP-1: returns the vertex whose edge number has the largest binary exponent. Among equals, vertex 1 comes first,

@@ -14,6 +14,11 @@ impl Number for f64 {
     type Choice = bool;
 
     #[inline(always)]
+    fn one() -> f64 {
+        1.0
+    }
+
+    #[inline(always)]
     fn from_edge(edge: i64) -> f64 {
         edge as f64
     }
@@ -29,13 +34,19 @@ impl Number for f64 {
     }
 
     #[inline(always)]
-    fn times(self, other: f64) -> f64 {
-        self * other
+    fn product<const BITS: u32>(self, other: f64) -> f64 {
+        (self * other).cut()
     }
 
     #[inline(always)]
-    fn aligned_sum<const BITS: i32>(terms: [f64; 3]) -> f64 {
-        let (sum, unit) = aligned::<BITS>(terms);
+    fn linear(number: f64, [first, third]: [[f64; 2]; 2]) -> f64 {
+        let (sum, unit) = aligned::<24>([first[0] * first[1], number, third[0] * third[1]]);
+        sum * unit
+    }
+
+    #[inline(always)]
+    fn sum_of_products(factors: [[f64; 2]; 3]) -> f64 {
+        let (sum, unit) = aligned::<29>(factors.map(|[a, b]| a * b));
         sum * unit
     }
 

@@ -22,19 +22,23 @@ pub trait Number: Copy {
     /// Truth of a comparison.
     type Choice: Choice;
 
+    /// The number 1.
+    fn one() -> Self;
     /// Converts an edge function, of at most 39 bits.
     fn from_edge(edge: i64) -> Self;
     /// Converts a finite number.
     fn from_f32(number: f32) -> Self;
     /// Returns the number toward zero to its first 24 significant bits.
     fn cut(self) -> Self;
-    /// Returns the product.
-    fn times(self, other: Self) -> Self;
-    /// Returns the sum of the terms, each toward zero to a multiple of the `BITS`th bit of the largest magnitude.
-    fn aligned_sum<const BITS: i32>(terms: [Self; 3]) -> Self;
-    /// Returns the sum of edge numbers for a [`reciprocal`](Self::reciprocal): an [`aligned_sum`](Self::aligned_sum) of 29 bits. Outside of a
-    /// triangle it may come to 0; then it is the last of these bits.
+    /// Returns the product of numbers with 24 and `BITS` bits, 24 or 29, toward zero to its first 24 significant bits.
+    fn product<const BITS: u32>(self, other: Self) -> Self;
+    /// Returns the sum of a number and two products, each toward zero to a multiple of the 24th bit of the largest magnitude.
+    fn linear(number: Self, factors: [[Self; 2]; 2]) -> Self;
+    /// Returns the sum of edge numbers for a [`reciprocal`](Self::reciprocal), each toward zero to a multiple of the 29th bit of the largest magnitude.
+    /// Outside of a triangle it may come to 0; then it is the last of these bits.
     fn sum_of_edges(edges: [Self; 3]) -> Self;
+    /// Returns the sum of products, each toward zero to a multiple of the 29th bit of the largest magnitude.
+    fn sum_of_products(factors: [[Self; 2]; 3]) -> Self;
     /// Returns floor(2^s / self - 3/16) 2^-s with the s that leaves 29 bits, exactly 1 / self for a power of two. The sign is kept.
     fn reciprocal(self) -> Self;
     /// Returns 1 - a - b, its magnitude rounded up to 24 significant bits.
@@ -86,8 +90,8 @@ impl<N: Number<Choice = bool>> Weights<N> {
 /// WGT-1: returns the ratios r_k of positive w of the vertices: w_1 times the reciprocal of w_k, cut to 24 bits. r_1 is 1.
 #[inline(always)]
 pub fn ratios<N: Number>(w: [N; 3]) -> [N; 3] {
-    let ratio = |k: usize| w[1].times(w[k].reciprocal()).cut();
-    [ratio(0), N::from_edge(1), ratio(2)]
+    let ratio = |k: usize| w[1].product::<29>(w[k].reciprocal());
+    [ratio(0), N::one(), ratio(2)]
 }
 
 /// WGT-1: returns the edge numbers e_k.
@@ -95,7 +99,7 @@ pub fn ratios<N: Number>(w: [N; 3]) -> [N; 3] {
 pub fn edge_numbers<N: Number>(e: [N; 3], ratios: Option<[N; 3]>) -> [N; 3] {
     let e = [e[0].cut(), e[1].cut(), e[2].cut()];
     match ratios {
-        Some(r) => [e[0].times(r[0]).cut(), e[1], e[2].times(r[2]).cut()],
+        Some(r) => [e[0].product::<24>(r[0]), e[1], e[2].product::<24>(r[2])],
         None => e,
     }
 }
@@ -103,7 +107,7 @@ pub fn edge_numbers<N: Number>(e: [N; 3], ratios: Option<[N; 3]>) -> [N; 3] {
 /// WGT-1: returns e_k R, cut to 24 bits.
 #[inline(always)]
 pub fn shares<N: Number>(edges: [N; 3], reciprocal: N) -> [N; 3] {
-    [edges[0].times(reciprocal).cut(), edges[1].times(reciprocal).cut(), edges[2].times(reciprocal).cut()]
+    edges.map(|edge| edge.product::<29>(reciprocal))
 }
 
 /// WGT-1: returns whether the first and whether the third weight dominates. The second does if neither does. Among weights of the same exponent
@@ -157,16 +161,17 @@ impl<N: Number> Linear<N> {
         Linear::from_values(f, difference, N::from_f32)
     }
 
-    /// WGT-1: returns the terms b_0 (f_0 - f_1), f_1 and b_2 (f_2 - f_1).
-    #[inline(always)]
-    pub fn terms(&self, b: [N; 3]) -> [N; 3] {
-        [b[0].times(self.first), self.second, b[2].times(self.third)]
-    }
-
     /// WGT-1: returns the number where the weights are `b`: at most 26 bits.
     #[inline(always)]
     pub fn at(&self, b: [N; 3]) -> N {
-        N::aligned_sum::<24>(self.terms(b))
+        N::linear(self.second, [[b[0], self.first], [b[2], self.third]])
+    }
+}
+
+impl Linear<Binary> {
+    /// WGT-1: returns the terms b_0 (f_0 - f_1), f_1 and b_2 (f_2 - f_1).
+    pub fn terms(&self, b: [Binary; 3]) -> [Binary; 3] {
+        [b[0].times(self.first), self.second, b[2].times(self.third)]
     }
 }
 
@@ -184,17 +189,87 @@ pub fn differences(f: [f32; 3]) -> [f32; 2] {
     [difference(f[0], f[1]), difference(f[2], f[1])]
 }
 
-/// Returns a number that is not negative, rounded up to 24 bits.
+/// Returns a number of at most 61 bits that is not negative, rounded up to 24 bits. Its mantissa may be 2^24.
 #[inline(always)]
 fn rounded_up<I: Integer>(n: Binary<I>) -> Binary<I> {
-    let dropped = (n.mantissa.bits() - I::new(24)).greatest(I::new(0));
-    let kept = (n.mantissa + I::new(1).up(dropped) - I::new(1)).down(dropped).within(0, 1 << 24);
-    Binary { mantissa: kept, exponent: n.exponent + dropped }
+    let (zero, dropped) = (I::new(0), I::new(61 - 24));
+    let up = I::new(61) - n.mantissa.bits();
+    let high = n.mantissa.up(up).within(0, (1 << 61) - 1);
+    let mantissa = (zero - (zero - high).down(dropped)).within(0, 1 << 24);
+    Binary { mantissa, exponent: I::new(LEAST_TOP).or(n.mantissa.is_zero(), n.exponent + dropped - up) }
 }
 
+/// A term of a sum.
+#[derive(Clone, Copy)]
+struct Term<I: Integer> {
+    magnitude: I,
+    is_negative: I::Choice,
+    exponent: I,
+    /// Bits of the magnitude. Those of 0 are too many; its exponent makes up for that.
+    length: I,
+    /// A shift that leaves nothing.
+    away: i64,
+}
+
+impl<I: Integer> Term<I> {
+    /// Returns a normal number.
+    #[inline(always)]
+    fn new(number: Binary<I>) -> Term<I> {
+        Term {
+            magnitude: number.mantissa.magnitude().within(0, (1 << 24) - 1),
+            is_negative: number.mantissa.is_negative(),
+            exponent: number.exponent,
+            length: I::new(24),
+            away: 31,
+        }
+    }
+
+    /// Returns the term times 2^`up`, by its magnitude.
+    #[inline(always)]
+    fn raised(self, up: i64) -> Term<I> {
+        Term { magnitude: self.magnitude * I::new(1 << up), length: self.length + I::new(up), ..self }
+    }
+
+    /// Returns the product of normal numbers, of which the second has `BITS` bits.
+    #[inline(always)]
+    fn product<const BITS: u32>([a, b]: [Binary<I>; 2]) -> Term<I> {
+        let magnitude = (a.mantissa.magnitude() * b.mantissa.magnitude()).within(0, (1 << (24 + BITS)) - 1);
+        let least = I::new((23 + BITS).into());
+        Term {
+            magnitude,
+            is_negative: a.mantissa.is_negative() ^ b.mantissa.is_negative(),
+            exponent: a.exponent + b.exponent,
+            length: least + magnitude.down(least),
+            away: 63,
+        }
+    }
+
+    /// Returns the term in steps of 2^`unit`, toward zero.
+    #[inline(always)]
+    fn steps(self, unit: I, most: i64) -> I {
+        let down = (unit - self.exponent).least(I::new(self.away));
+        self.magnitude.down(down).within(0, most).negated(self.is_negative)
+    }
+}
+
+/// Returns the sum of terms of `BITS` bits or more, each toward zero to a multiple of the `BITS`th bit of the largest.
+#[inline(always)]
+fn aligned_sum<const BITS: u32, I: Integer>([a, b, c]: [Term<I>; 3]) -> Binary<I> {
+    let unit = |term: Term<I>| term.exponent + (term.length - I::new(BITS.into()));
+    let unit = unit(a).greatest(unit(b)).greatest(unit(c));
+    let steps = |term: Term<I>| term.steps(unit, (1 << BITS) - 1);
+    Binary { mantissa: steps(a) + steps(b) + steps(c), exponent: unit }
+}
+
+/// WGT-1: numbers are [normal](Binary::first_bits) but for edge functions, sums and reciprocals.
 impl<I: Integer> Number for Binary<I> {
     type Exponent = I;
     type Choice = I::Choice;
+
+    #[inline(always)]
+    fn one() -> Binary<I> {
+        Binary { mantissa: I::new(Binary::ONE.mantissa), exponent: I::new(Binary::ONE.exponent) }
+    }
 
     #[inline(always)]
     fn from_edge(edge: i64) -> Binary<I> {
@@ -213,24 +288,28 @@ impl<I: Integer> Number for Binary<I> {
     }
 
     #[inline(always)]
-    fn times(self, other: Binary<I>) -> Binary<I> {
-        Binary { mantissa: self.mantissa * other.mantissa, exponent: self.exponent + other.exponent }
+    fn product<const BITS: u32>(self, other: Binary<I>) -> Binary<I> {
+        let term = Term::product::<BITS>([self, other]);
+        let unit = term.exponent + (term.length - I::new(24));
+        Binary { mantissa: term.steps(unit, (1 << 24) - 1), exponent: unit }
     }
 
     #[inline(always)]
-    fn aligned_sum<const BITS: i32>(terms: [Binary<I>; 3]) -> Binary<I> {
-        let [a, b, c] = terms;
-        let top = a.top().greatest(b.top()).greatest(c.top());
-        let unit = (top - I::new(BITS.into())).or(I::new(LEAST_TOP).is_below(top), I::new(0));
-        let most = (1 << BITS) - 1;
-        let steps = |term: Binary<I>| term.steps(unit).within(-most, most);
-        Binary { mantissa: steps(a) + steps(b) + steps(c), exponent: unit }
+    fn linear(number: Binary<I>, factors: [[Binary<I>; 2]; 2]) -> Binary<I> {
+        let [first, third] = factors.map(Term::product::<24>);
+        aligned_sum::<24, I>([first, Term::new(number), third])
     }
 
     #[inline(always)]
     fn sum_of_edges(edges: [Binary<I>; 3]) -> Binary<I> {
-        let sum = Binary::aligned_sum::<29>(edges);
-        Binary { mantissa: I::new(1).or(sum.mantissa.is_zero(), sum.mantissa), ..sum }
+        let sum = aligned_sum::<29, I>(edges.map(|edge| Term::new(edge).raised(5)));
+        let mantissa = I::new(1).or(sum.mantissa.is_zero(), sum.mantissa);
+        Binary { mantissa, exponent: sum.exponent - I::new(5) }
+    }
+
+    #[inline(always)]
+    fn sum_of_products(factors: [[Binary<I>; 2]; 3]) -> Binary<I> {
+        aligned_sum::<29, I>(factors.map(Term::product::<24>))
     }
 
     #[inline(always)]
@@ -254,24 +333,18 @@ impl<I: Integer> Number for Binary<I> {
         Binary { mantissa: mantissa.negated(rest.is_negative()), exponent }
     }
 
-    /// What weights lose below the 60th fraction bit does not matter: the rest is at least 1/8, and where both lose some it is 1 to 24 bits.
+    /// Both weights are below 1. What they lose below the 60th fraction bit does not matter: the rest is at least 1/8, and where both lose some it is 1 to
+    /// 24 bits.
     #[inline(always)]
     fn rest_of_weights(a: Binary<I>, b: Binary<I>) -> Binary<I> {
-        let zero = I::new(0);
-        let fixed = |n: Binary<I>| {
-            let up = (n.exponent + I::new(60)).limited(-63, 63);
-            n.mantissa
-                .down((zero - up).greatest(zero))
-                .or(up.is_negative(), n.mantissa.up(up.greatest(zero)))
-                .within(0, 1 << 61)
-        };
-        let rest = I::new(1 << 60) - fixed(a) - fixed(b);
-        rounded_up(Binary { mantissa: rest.greatest(I::new(1)).within(1, 1 << 60), exponent: I::new(-60) })
+        let fixed = |n: Binary<I>| n.mantissa.up(I::new(36)).down((I::new(-24) - n.exponent).least(I::new(63)));
+        let rest = (I::new(1 << 60) - fixed(a) - fixed(b)).within(1, 1 << 60);
+        rounded_up(Binary { mantissa: rest, exponent: I::new(-60) })
     }
 
     #[inline(always)]
     fn exponent(self) -> I {
-        (self.mantissa.bits() + self.exponent).or(I::new(0).is_below(self.mantissa), I::new(LEAST_TOP))
+        I::new(LEAST_TOP).or(self.mantissa.is_negative(), self.exponent)
     }
 
     #[inline(always)]
@@ -371,14 +444,14 @@ mod tests {
             let mut weight = || {
                 let (mantissa, down) = (boundary(&mut random, 24), random.bits() % 60);
                 let down = down as i32 + 1;
-                Binary { mantissa, exponent: (-down - bits_of(mantissa)).into() }
+                Binary { mantissa, exponent: (-down - bits_of(mantissa)).into() }.cut()
             };
             let (a, mut b) = (weight(), weight());
             if step % 2 == 0 {
                 // So that the sum hardly differs from a multiple of 2^-25.
                 let beyond = (1_i64 << 24) - (step & 3);
                 let unit = a.exponent;
-                b = Binary { mantissa: beyond, exponent: unit - 24 };
+                b = Binary { mantissa: beyond, exponent: unit - 24 }.cut();
             }
             if double(a) + double(b) > 0.7 {
                 continue;
@@ -441,7 +514,7 @@ mod tests {
 
     #[test]
     fn equal_weights_go_round() {
-        let of = |n: [i64; 3]| dominance::<Binary>(n.map(Binary::from_edge));
+        let of = |n: [i64; 3]| dominance::<Binary>(n.map(|n| Binary::from_edge(n).cut()));
         assert_eq!(
             [of([5, 5, 2]), of([2, 5, 5]), of([5, 2, 5]), of([4, 4, 4])],
             [[true, false], [false, false], [false, true], [false, true]]

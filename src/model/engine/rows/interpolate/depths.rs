@@ -50,7 +50,7 @@ impl Vertices {
         let z = if first { z0 } else { z2 };
         let z = if second { z1 } else { z };
         let (one, other) = ((one * reciprocal).cut(), (other * reciprocal).cut());
-        f64::aligned_sum::<29>([one * by_one, z, other * by_other])
+        f64::sum_of_products([[one, by_one], [1.0, z], [other, by_other]])
     }
 }
 
