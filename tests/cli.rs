@@ -207,7 +207,16 @@ fn programs_are_printed_as_functions() {
     bench.run("lower --generic --whole --to c99 -o vendor").text();
     let header = fs::read_to_string(bench.path("vendor/ninebit_pixels.h")).unwrap();
     assert!(header.contains("int nb_draw_pixel(") && bench.path("vendor/ninebit_pixels.c").exists(), "{header}");
-    bench.run("lower --generic --whole --to glsl").failed(2, "--to c99");
+    let shader = "int nb_draw_pixel(int triangle, int x, int y, inout uint word, inout uint depth)";
+    assert!(bench.run("lower --generic --whole --to glsl").text().contains(shader));
+    bench.run("lower --generic --whole --to glsl -o vendor").text();
+    assert!(fs::read_to_string(bench.path("vendor/ninebit_pixels.frag")).unwrap().contains(shader));
+    assert!(bench.path("vendor/ninebit_pixels.vert").exists());
+    let shader = bench.run("lower --generic --whole --to wgsl").text();
+    assert!(shader.contains("fn nb_draw_pixel(triangle: i32, x: i32, y: i32, word: ptr<function, u32>,"));
+    assert!(!shader.contains('@') && !shader.contains('?'), "{shader}");
+    bench.run("lower --generic --whole --to wgsl -o vendor").failed(2, "stdout");
+    bench.run("lower --generic --whole --to verilog").failed(2, "--to wgsl");
     bench.run("lower --generic --to glsl -o vendor").failed(2, "stdout");
     bench.run("lower --generic lit.words --to c99").failed(2, "cannot be used with");
     bench.run("lower lit-words-file.ron --whole --to glsl -o shaders").text();

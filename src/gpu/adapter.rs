@@ -1,12 +1,14 @@
 //! Adapters, and the device of one: buffers within its limits, and what its driver says.
 
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use ninebit::shown;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 use crate::failure::Failure;
+use crate::renderer::Pipelines;
 
 /// Columns and rows of a tile, each pixel of which is an invocation of a workgroup.
 pub(crate) const TILE: u32 = 16;
@@ -15,7 +17,7 @@ pub(crate) const TILE: u32 = 16;
 pub(crate) const DISPATCH_ROW: u32 = 32_768;
 
 /// Buffers that a shader reads or writes, besides its uniform one.
-const STORAGE_BUFFERS: u32 = 5;
+const STORAGE_BUFFERS: u32 = 6;
 
 /// Returns the adapters that the machine has, the fastest kinds first.
 pub fn adapters() -> Vec<wgpu::Adapter> {
@@ -77,6 +79,8 @@ pub struct Gpu {
     pub(crate) queue: wgpu::Queue,
     limits: wgpu::Limits,
     complaint: Complaint,
+    /// Pipelines of texts for every draw: these compile for long.
+    pub(crate) pipelines: Mutex<HashMap<String, Pipelines>>,
 }
 
 impl Gpu {
@@ -105,7 +109,7 @@ impl Gpu {
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             heard.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert_with(|| error.to_string());
         }));
-        Ok(Gpu { name, device, queue, limits, complaint })
+        Ok(Gpu { name, device, queue, limits, complaint, pipelines: Mutex::default() })
     }
 
     /// Runs a shader of its own whose bindings 0 and 1 are the given words and as many results as asked for.

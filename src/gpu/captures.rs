@@ -36,7 +36,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let all = frames(&wanted).map_err(|unmatched| Failure::fault(unmatched.to_string()))?;
     let (mut verdicts, mut different) = (Vec::new(), 0);
     for frame in all.into_iter().step_by(arguments.step as usize) {
-        let (pixels, text) = draw(&frame, gpu.as_ref(), policies)?;
+        let (pixels, text) = draw(&frame, gpu.as_ref().map(|gpu| (gpu, arguments.drawing.text())), policies)?;
         if !text.is_empty() {
             different += 1;
             write_text(&format!("{}/{} has other words than our engine's\n{text}", frame.suite, frame.name))?;
@@ -54,12 +54,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Draws a frame: by the GPU if there is one, and by our engine. Returns the pixels, and what differs.
-fn draw(frame: &Frame, gpu: Option<&Gpu>, policies: Policies) -> Result<(Vec<[u8; 4]>, String), Failure> {
+fn draw(frame: &Frame, gpu: Option<(&Gpu, Text)>, policies: Policies) -> Result<(Vec<[u8; 4]>, String), Failure> {
     let mut text = String::new();
     let pixels = frame.prepare(policies)?.render_by(|scene, plan| {
         let wanted = by_engine(plan);
-        let Some(gpu) = gpu else { return Ok(wanted) };
-        let found = drawn(gpu, scene, plan)?;
+        let Some((gpu, text_of)) = gpu else { return Ok(wanted) };
+        let found = drawn(gpu, scene, plan, text_of)?;
         text += &difference(plan, &wanted, &found).unwrap_or_default();
         Ok::<Frames, Failure>(found)
     })?;

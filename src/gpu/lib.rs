@@ -14,4 +14,4 @@ mod text;
 pub use adapter::{Gpu, adapters, description};
 pub use comparison::difference;
 pub use failure::Failure;
-pub use renderer::Renderer;
+pub use renderer::{Renderer, Text};

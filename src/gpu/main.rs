@@ -19,7 +19,7 @@ use ninebit::state::{Policies, Scene};
 use ninebit_files::catch_panic::catch_panic;
 use ninebit_files::files;
 use ninebit_files::output::{Compression, Destination, encode_png, write_text};
-use ninebit_gpu::{Failure, Gpu, Renderer, adapters, description, difference};
+use ninebit_gpu::{Failure, Gpu, Renderer, Text, adapters, description, difference};
 use walkdir::WalkDir;
 
 /// Draws scenes of ninebit on a GPU, by the rules printed as WGSL: with the words of `ninebit render`
@@ -117,6 +117,9 @@ struct Drawing {
     /// Choose an alternative of a rule; `ninebit policies` lists them
     #[arg(long = "policy", value_name = "RULE=VALUE")]
     policies: Vec<String>,
+    /// Draw every draw by one text, which reads its state as words: `ninebit lower --generic --whole --to wgsl`
+    #[arg(long)]
+    generic: bool,
 }
 
 impl Drawing {
@@ -125,6 +128,11 @@ impl Drawing {
         let gpu = Gpu::open(self.adapter.as_deref())?;
         say(&format!("note: drawn by {}\n", gpu.name));
         Ok(gpu)
+    }
+
+    /// Returns the text that draws.
+    fn text(&self) -> Text {
+        if self.generic { Text::OfEveryDraw } else { Text::OfDraw }
     }
 
     /// Returns the chosen alternatives.
@@ -206,7 +214,7 @@ fn picture(
         Failure::usage(message, format!("the scene has {}", names.join(", ")))
     })?;
     let frames = match chosen.open(drawing)? {
-        Some(gpu) => drawn(&gpu, &scene, &plan)?,
+        Some(gpu) => drawn(&gpu, &scene, &plan, drawing.text())?,
         None => by_engine(&plan),
     };
     let surface = &frames.surfaces[index];
@@ -215,8 +223,9 @@ fn picture(
 }
 
 /// Draws a scene by the GPU.
-fn drawn(gpu: &Gpu, scene: &Scene, plan: &Plan) -> Result<Frames, Failure> {
-    let renderer = Renderer::new(gpu, scene, plan)?;
+fn drawn(gpu: &Gpu, scene: &Scene, plan: &Plan, text: Text) -> Result<Frames, Failure> {
+    let plan = text.plan(scene, plan)?;
+    let renderer = Renderer::new(gpu, scene, &plan, text)?;
     renderer.draw()?;
     renderer.frames()
 }
@@ -227,9 +236,10 @@ fn by_engine(plan: &Plan) -> Frames {
 }
 
 /// Times frames of the GPU. Returns set-up, and of a frame the time and that of the CPU, in milliseconds.
-fn time_of_gpu(gpu: &Gpu, scene: &Scene, plan: &Plan, frames: u32) -> Result<[f64; 3], Failure> {
+fn time_of_gpu(gpu: &Gpu, scene: &Scene, plan: &Plan, (text, frames): (Text, u32)) -> Result<[f64; 3], Failure> {
     let started = Instant::now();
-    let renderer = Renderer::new(gpu, scene, plan)?;
+    let plan = text.plan(scene, plan)?;
+    let renderer = Renderer::new(gpu, scene, &plan, text)?;
     // The driver compiles at the first frame.
     renderer.draw()?;
     let set_up = milliseconds(started.elapsed());
@@ -254,7 +264,7 @@ fn bench(scenes: &[PathBuf], frames: u32, threads: u16, (drawing, chosen): (&Dra
     );
     for path in &self::scenes(scenes) {
         let (scene, plan) = drawing.load(path)?;
-        let of_gpu = gpu.as_ref().map(|gpu| time_of_gpu(gpu, &scene, &plan, frames)).transpose()?;
+        let of_gpu = gpu.as_ref().map(|gpu| time_of_gpu(gpu, &scene, &plan, (drawing.text(), frames))).transpose()?;
         let engine =
             engine::Renderer::new(&plan, &RenderOptions { threads: threads.into(), ..RenderOptions::default() });
         let (mut surfaces, statistics) = engine.render();
@@ -326,7 +336,7 @@ fn replay(places: &[PathBuf], drawing: &Drawing) -> Result<(), Failure> {
 /// Draws a scene twice. Returns what differs.
 fn compared(path: &Path, gpu: &Gpu, drawing: &Drawing) -> Result<Option<String>, Failure> {
     let (scene, plan) = drawing.load(path)?;
-    Ok(difference(&plan, &by_engine(&plan), &drawn(gpu, &scene, &plan)?))
+    Ok(difference(&plan, &by_engine(&plan), &drawn(gpu, &scene, &plan, drawing.text())?))
 }
 
 /// Returns the scenes of places: files, and those below folders. Expectations and families are none.

@@ -1,18 +1,21 @@
 //! Draws a plan on a GPU.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
+use std::sync::PoisonError;
 
 use ninebit::engine::{TextureWords, cleared};
 use ninebit::frame::Frames;
-use ninebit::plan::{Plan, PlannedDraw};
+use ninebit::plan::{Plan, PlanOptions, PlannedDraw};
 use ninebit::state::{Scene, TextureImage};
-use ninebit_lower::{Function, Options, Setup};
+use ninebit_lower::{Field, Function, Generic, Options, Setup, with_all_levels};
+use ninebit_methods::export::draw_words;
 use wgpu::BufferUsages;
 
 use crate::adapter::{DISPATCH_ROW, Gpu};
 use crate::bins::{Bins, Tiles, sorted};
 use crate::failure::Failure;
-use crate::text::{WORK, Way, fields, length, shader};
+use crate::text::{WORK, Way, fields, generic_shader, length, shader};
 
 /// Tiles of all triangles of a scene, each triangle's counted for itself.
 const TILES: usize = 1 << 25;
@@ -64,6 +67,8 @@ struct Shared<'d> {
     length: usize,
     memory: wgpu::Buffer,
     bases: [u32; 4],
+    /// The state, which the text for every draw reads.
+    state: Option<wgpu::Buffer>,
 }
 
 /// Triangles that are dispatched together.
@@ -85,7 +90,7 @@ struct Dispatch {
 }
 
 /// The pipeline of a draw, and that for tiles which a triangle covers.
-type Pipelines = [wgpu::ComputePipeline; 2];
+pub(crate) type Pipelines = [wgpu::ComputePipeline; 2];
 
 /// The work of a draw.
 #[derive(Debug)]
@@ -108,9 +113,32 @@ pub struct Renderer<'a> {
     works: Vec<Work>,
 }
 
+/// By which text draws are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Text {
+    /// Each by its own.
+    OfDraw,
+    /// All by one, which reads the state of each as words.
+    OfEveryDraw,
+}
+
+impl Text {
+    /// Returns the plan by which it draws a scene, of a plan of that scene: the text for every draw needs one that leaves out nothing.
+    ///
+    /// # Errors
+    /// Those of planning.
+    pub fn plan<'p>(self, scene: &Scene, plan: &'p Plan) -> Result<Cow<'p, Plan>, Failure> {
+        if self == Text::OfDraw {
+            return Ok(Cow::Borrowed(plan));
+        }
+        Ok(Cow::Owned(Plan::compile(scene, &PlanOptions { policies: plan.policies, prune: false })?))
+    }
+}
+
 /// Makes the works of draws.
 struct Builder<'a> {
     gpu: &'a Gpu,
+    scene: &'a Scene,
     plan: &'a Plan,
     cleared: &'a Frames,
     targets: &'a [Target],
@@ -124,8 +152,8 @@ impl<'a> Renderer<'a> {
     /// Prints the shaders of a scene's draws, compiles them and fills buffers.
     ///
     /// # Errors
-    /// Limits of the adapter; what its driver says.
-    pub fn new(gpu: &'a Gpu, scene: &Scene, plan: &'a Plan) -> Result<Renderer<'a>, Failure> {
+    /// Limits of the adapter; what its driver says; state that no words set, if they are read.
+    pub fn new(gpu: &'a Gpu, scene: &Scene, plan: &'a Plan, text: Text) -> Result<Renderer<'a>, Failure> {
         let cleared = cleared(plan);
         let mut targets = Vec::new();
         for surface in &cleared.surfaces {
@@ -138,12 +166,15 @@ impl<'a> Renderer<'a> {
             targets.push(Target { held: [words?, depths?], cleared: [first_words?, first_depths?] });
         }
         let mut works = Vec::new();
-        let layout = layout(gpu);
+        let layout = layout(gpu, text);
         let (pipelines, tiles) = (HashMap::new(), TILES);
-        let mut builder = Builder { gpu, plan, cleared: &cleared, targets: &targets, layout, pipelines, tiles };
+        let mut builder = Builder { gpu, scene, plan, cleared: &cleared, targets: &targets, layout, pipelines, tiles };
         let options = Options { policies: plan.policies, ..Options::default() };
         for (number, draw) in plan.draws().iter().enumerate() {
-            works.extend(builder.shader(number, draw, &Function::of_pixel(scene, plan, number, &options))?);
+            works.extend(match text {
+                Text::OfDraw => builder.own(number, draw, &Function::of_pixel(scene, plan, number, &options))?,
+                Text::OfEveryDraw => builder.generic(number, draw)?,
+            });
         }
         gpu.wait()?;
         Ok(Renderer { gpu, plan, cleared, targets, works })
@@ -205,29 +236,70 @@ impl<'a> Renderer<'a> {
 }
 
 impl Builder<'_> {
-    /// Makes the work of a printed draw, unless nothing of it can be seen.
-    fn shader(&mut self, number: usize, draw: &PlannedDraw, function: &Function) -> Result<Option<Work>, Failure> {
+    /// Makes the work of a draw by its own text, unless nothing of it can be seen.
+    fn own(&mut self, number: usize, draw: &PlannedDraw, function: &Function) -> Result<Option<Work>, Failure> {
         let setup = Setup::new(self.plan, draw, function);
         let fields = fields(function, &setup);
-        let groups = sorted(self.plan, draw, &setup, &fields, self.tiles).ok_or_else(|| {
-            Failure::limit(format!("up to draw {number}, triangles lie in more than {TILES} tiles of 16 x 16 pixels"))
-        })?;
-        self.tiles -= groups.iter().map(Bins::entries).sum::<usize>();
+        let groups = self.sorted(number, draw, &setup, &fields)?;
         let Some(first) = groups.first() else { return Ok(None) };
         let is_few = groups.len() == 1 && first.triangles <= FEW && first.entries() >= LARGE * first.triangles;
         let way = if is_few { Way::ByTriangle } else { Way::ByTile };
-        let pipelines = self.pipelines(shader(function, &setup, &fields, way), number, way)?;
+        let text = shader(function, &setup, &fields, way);
+        self.work((number, draw), (text, way, length(&fields)), &groups, None).map(Some)
+    }
+
+    /// Makes the work of a draw by the text for every draw, unless nothing of it can be seen.
+    fn generic(&mut self, number: usize, draw: &PlannedDraw) -> Result<Option<Work>, Failure> {
+        let generic = Generic { chip: self.plan.profile, policies: self.plan.policies };
+        let (fields, draw) = (Field::all(), &with_all_levels(self.plan, draw));
+        let groups = self.sorted(number, draw, &Setup::of_all(self.plan, draw), &fields)?;
+        if groups.is_empty() {
+            return Ok(None);
+        }
+        let words = draw_words(self.scene, draw, number).map_err(|error| Failure::unwritten(error.to_string()))?;
+        let words: HashMap<u32, u32> = words.into_iter().collect();
+        let state = generic.state(|method| words.get(&method).copied().unwrap_or(0));
+        let state = self.gpu.buffer(&format!("the state of draw {number}"), &state, BufferUsages::STORAGE)?;
+        let text = (generic_shader(&generic), Way::ByTile, length(&fields));
+        self.work((number, draw), text, &groups, Some(state)).map(Some)
+    }
+
+    /// Sorts the triangles of a draw.
+    fn sorted(
+        &mut self,
+        number: usize,
+        draw: &PlannedDraw,
+        setup: &Setup,
+        fields: &[Field],
+    ) -> Result<Vec<Bins>, Failure> {
+        let groups = sorted(self.plan, draw, setup, fields, self.tiles).ok_or_else(|| {
+            Failure::limit(format!("up to draw {number}, triangles lie in more than {TILES} tiles of 16 x 16 pixels"))
+        })?;
+        self.tiles -= groups.iter().map(Bins::entries).sum::<usize>();
+        Ok(groups)
+    }
+
+    /// Makes the work of a draw by a text, to whose triangles belong so many words.
+    fn work(
+        &mut self,
+        (number, draw): (usize, &PlannedDraw),
+        (text, way, length): (String, Way, usize),
+        groups: &[Bins],
+        state: Option<wgpu::Buffer>,
+    ) -> Result<Work, Failure> {
+        let pipelines = self.pipelines(text, number, way, state.is_some())?;
         let Memory { words, bases, sampled } = self.memory(number, draw)?;
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
         let memory = self.gpu.buffer(&format!("the textures of draw {number}"), &words, usage)?;
-        let shared = Shared { number, draw, way, length: length(&fields), memory, bases };
+        let shared = Shared { number, draw, way, length, memory, bases, state };
         let batches = groups.iter().map(|bins| self.batch(&shared, bins)).collect::<Result<Vec<_>, _>>()?;
-        Ok(Some(Work { draw: number, pipelines, memory: shared.memory, sampled, batches }))
+        Ok(Work { draw: number, pipelines, memory: shared.memory, sampled, batches })
     }
 
-    /// Compiles a shader, unless another draw has the same.
-    fn pipelines(&mut self, text: String, number: usize, way: Way) -> Result<Pipelines, Failure> {
-        if let Some(known) = self.pipelines.get(&text) {
+    /// Compiles a shader, unless another draw has the same; it is kept for other scenes if asked.
+    fn pipelines(&mut self, text: String, number: usize, way: Way, is_kept: bool) -> Result<Pipelines, Failure> {
+        let kept = || self.gpu.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = self.pipelines.get(&text).or(kept().get(&text)) {
             return Ok(known.clone());
         }
         let device = &self.gpu.device;
@@ -251,7 +323,11 @@ impl Builder<'_> {
         let full = if way == Way::ByTriangle { made(&[("is_full", 1.0)]) } else { partial.clone() };
         let pipelines = [partial, full];
         self.gpu.check()?;
-        self.pipelines.insert(text, pipelines.clone());
+        if is_kept {
+            kept().insert(text, pipelines.clone());
+        } else {
+            self.pipelines.insert(text, pipelines.clone());
+        }
         Ok(pipelines)
     }
 
@@ -308,7 +384,8 @@ impl Builder<'_> {
         let [words, depths] = &self.targets[shared.draw.target].held;
         let size = std::num::NonZeroU64::new(4 * shared.window() as u64);
         let uniform = wgpu::BufferBinding { buffer: &uniform, offset: 0, size };
-        let storage = [&tiles, &constants, &shared.memory, words, depths].map(|buffer| buffer.as_entire_binding());
+        let storage = [&tiles, &constants, &shared.memory, words, depths].into_iter().chain(&shared.state);
+        let storage = storage.map(wgpu::Buffer::as_entire_binding);
         let resources = [wgpu::BindingResource::Buffer(uniform)].into_iter().chain(storage);
         let entries: Vec<wgpu::BindGroupEntry<'_>> =
             (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
@@ -330,20 +407,21 @@ impl Shared<'_> {
 }
 
 /// Returns the layout of all shaders' buffers.
-fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+fn layout(gpu: &Gpu, text: Text) -> wgpu::BindGroupLayout {
     let entry = |binding: u32| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::COMPUTE,
         ty: wgpu::BindingType::Buffer {
             ty: match binding {
                 0 => wgpu::BufferBindingType::Uniform,
-                _ => wgpu::BufferBindingType::Storage { read_only: binding < 4 },
+                _ => wgpu::BufferBindingType::Storage { read_only: !(4..6).contains(&binding) },
             },
             has_dynamic_offset: binding == 0,
             min_binding_size: None,
         },
         count: None,
     };
-    let entries = [0, 1, 2, 3, 4, 5].map(entry);
+    let count = if text == Text::OfEveryDraw { 7 } else { 6 };
+    let entries: Vec<_> = (0..count).map(entry).collect();
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries })
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use ninebit_lower::code::Kind;
-use ninebit_lower::{Draw, Field, Function, Input, Language, Result, Setup};
+use ninebit_lower::{Draw, Field, Function, Generic, Input, Language, Result, Setup};
 
 use crate::adapter::{DISPATCH_ROW, TILE};
 use crate::bins::TILE_WORDS;
@@ -39,10 +39,11 @@ pub(crate) fn length(fields: &[Field]) -> usize {
 /// Prints the shader of a draw. Draws that differ in constants of triangles and textures alone have the same text.
 pub(crate) fn shader(function: &Function, setup: &Setup, fields: &[Field], way: Way) -> String {
     let draw = Draw { name: "ninebit_draw".to_string(), about: "the draw".to_string(), function, setup };
-    let mut text = Language::Wgsl.print_whole(&[draw]).unwrap_or_default();
+    let text = Language::Wgsl.print_whole(&[draw]).unwrap_or_default();
     let quads = length(fields) / 4;
+    let stored = where_depths_change(function, "    depths[at] = depth;\n");
     let (constants, tile_words, triangle, functions, body) = match way {
-        Way::ByTile => (String::new(), TILE_WORDS, "", NEXT.to_string(), by_tile(function, quads)),
+        Way::ByTile => (String::new(), TILE_WORDS, "", NEXT.to_string(), by_tile(&drawn(function, quads), stored)),
         Way::ByTriangle => {
             let constants = format!("    constants: array<vec4<u32>, {quads}>,\n");
             let covers = COVERS.replace("TILE", &TILE.to_string());
@@ -50,8 +51,39 @@ pub(crate) fn shader(function: &Function, setup: &Setup, fields: &[Field], way: 
         }
     };
     let constants_read = assignments(fields, way);
-    let _ = write!(
-        text,
+    let functions = format!(
+        "@group(0) @binding(2) var<storage, read> constants: array<vec4<u32>>;
+
+// The constants of a triangle, which begin at a four.
+fn triangle_at(first: u32) -> NinebitTriangle {{
+    var triangle: NinebitTriangle;
+{constants_read}    return triangle;
+}}
+{functions}"
+    );
+    text + &host((&constants, tile_words, &functions), &format!("{triangle}{BOUNDS}{body}"))
+}
+
+/// Prints the shader of every draw, by tile.
+pub(crate) fn generic_shader(generic: &Generic) -> String {
+    let functions = format!(
+        "@group(0) @binding(2) var<storage, read> ninebit_triangles: array<NinebitTriangle>;
+@group(0) @binding(6) var<storage, read> ninebit_state: NinebitState;
+{NEXT}"
+    );
+    let call = "            nb_draw_pixel(i32(tiles[k] & 0xffffu), i32(x), i32(y), &word, &depth);\n";
+    let body = format!("{BOUNDS}{}", by_tile(call, "    depths[at] = depth;\n"));
+    generic.whole_wgsl() + &host(("", TILE_WORDS, &functions), &body)
+}
+
+/// What ends an invocation that has no pixel.
+const BOUNDS: &str = "    if number >= work.tiles || x >= work.width || y >= work.height { return; }
+    let at = work.width * y + x;
+";
+
+/// Prints what draws the pixels of tiles around a text: more constants of a dispatch, words of a tile, functions; the end of the entry point.
+fn host((constants, tile_words, functions): (&str, usize, &str), body: &str) -> String {
+    format!(
         "
 // What a dispatch draws: columns and rows of the surface, tiles and where they begin, where each unit's memory begins; the constants of one triangle.
 struct Work {{
@@ -63,7 +95,6 @@ struct Work {{
 {constants}}}
 @group(0) @binding(0) var<uniform> work: Work;
 @group(0) @binding(1) var<storage, read> tiles: array<u32>;
-@group(0) @binding(2) var<storage, read> constants: array<vec4<u32>>;
 @group(0) @binding(3) var<storage, read> memory: array<u32>;
 @group(0) @binding(4) var<storage, read_write> words: array<u32>;
 @group(0) @binding(5) var<storage, read_write> depths: array<u32>;
@@ -73,11 +104,6 @@ var<private> bases: vec4<u32>;
 
 fn ninebit_texel(unit: i32, at: i32) -> u32 {{ return memory[bases[unit] + u32(at)]; }}
 
-// The constants of a triangle, which begin at a four.
-fn triangle_at(first: u32) -> NinebitTriangle {{
-    var triangle: NinebitTriangle;
-{constants_read}    return triangle;
-}}
 {functions}
 @compute @workgroup_size({TILE}, {TILE})
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {{
@@ -89,13 +115,10 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
     let across = (work.width + {}u) / {TILE}u;
     let x = {TILE}u * (tile % across) + local.x;
     let y = {TILE}u * (tile / across) + local.y;
-{triangle}    if number >= work.tiles || x >= work.width || y >= work.height {{ return; }}
-    let at = work.width * y + x;
 {body}}}
 ",
         TILE - 1,
-    );
-    text
+    )
 }
 
 /// The function that finds triangles in the list of a tile's row.
@@ -126,11 +149,20 @@ fn where_depths_change<'t>(function: &Function, text: &'t str) -> &'t str {
     if matches!(function.result, Result::Pixel { depth: Some(_), .. }) { text } else { "" }
 }
 
+/// Prints the call for a triangle of a row of a tile.
+fn drawn(function: &Function, quads: usize) -> String {
+    let kept = where_depths_change(function, "            depth = drawn.depth;\n");
+    format!(
+        "            let triangle = triangle_at({quads}u * (tiles[k] & 0xffffu));
+            let drawn = ninebit_draw(triangle, i32(x), i32(y), word, depth);
+            word = drawn.word;
+{kept}"
+    )
+}
+
 /// Prints the loop over the triangles of a row of a tile. What the surface holds is read once and written once. Drivers that run neighbouring invocations
 /// in step run them once for each triangle of a pixel, not for each of the tile, and test the end last.
-fn by_tile(function: &Function, quads: usize) -> String {
-    let kept = where_depths_change(function, "            depth = drawn.depth;\n");
-    let stored = where_depths_change(function, "    depths[at] = depth;\n");
+fn by_tile(call: &str, stored: &str) -> String {
     format!(
         "    var word = words[at];
     var depth = depths[at];
@@ -138,10 +170,7 @@ fn by_tile(function: &Function, quads: usize) -> String {
     var k = next(tiles[entry + local.y + 1u], end, local.x);
     loop {{
         if k < end {{
-            let triangle = triangle_at({quads}u * (tiles[k] & 0xffffu));
-            let drawn = ninebit_draw(triangle, i32(x), i32(y), word, depth);
-            word = drawn.word;
-{kept}        }}
+{call}        }}
         k = next(k + 1u, end, local.x);
         continuing {{ break if k >= end; }}
     }}

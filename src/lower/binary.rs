@@ -5,8 +5,9 @@ use ninebit::raster::binary::Binary;
 use ninebit::raster::weights;
 
 use crate::body::parts;
-use crate::code::{Code, Kind, Operand, Operation, Range};
+use crate::code::{ANY_BINARY, Code, Kind, Operand, Operation, Range};
 use crate::helper::{Helper, Sign};
+use crate::input::{Input, Local};
 use crate::kind::MANTISSA;
 use crate::number::Number;
 use crate::truth::Truth;
@@ -32,6 +33,12 @@ impl<'a> Called<'a> {
     /// Returns the result of a line, which may be negative.
     pub(crate) fn from_line(code: &'a Code, operand: Operand) -> Called<'a> {
         Called::Of(code, operand, Sign::Any)
+    }
+
+    /// Returns a parameter of a printed function.
+    pub(crate) fn local(code: &'a Code, name: &'static str) -> Called<'a> {
+        let input = Input::Local(Local { name, kind: Kind::Binary, range: ANY_BINARY });
+        Called::from_line(code, code.input(input, ANY_BINARY))
     }
 
     fn sign(self) -> Sign {

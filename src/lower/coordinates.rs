@@ -40,8 +40,7 @@ type OnFace<'a> = [Called<'a>; 3];
 
 impl<'a> Unit<'a, '_, '_> {
     pub(crate) fn component(&self, sample: &Sample<'a>, n: usize) -> Called<'a> {
-        let of = self.interpolator.linear(|part| Field::Coordinate(self.unit.index, n, part));
-        of.at(sample.b)
+        self.interpolator.coordinate(self.unit.index, n, sample)
     }
 
     /// Returns the direction into a cube map.

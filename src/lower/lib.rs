@@ -28,7 +28,7 @@ mod triangle;
 mod truth;
 mod whole;
 
-pub use generic::{Generic, Sources};
+pub use generic::{Generic, Sources, with_all_levels};
 pub use input::{Input, Local, Weight};
 pub use language::{Draw, Language, Named, Shaders};
 pub use pixel::{Function, Options, Result, Textures};

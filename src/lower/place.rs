@@ -198,13 +198,22 @@ impl<'a, 's, 'w> Unit<'a, 's, 'w> {
     }
 
     /// VOL-1: returns the layer of a volume times `by`, and whether it is in the border beyond.
-    pub(crate) fn layer(&self, layers: Number<'a>, by: Number<'a>) -> (Number<'a>, Truth<'a>) {
+    fn layer(&self, layers: Number<'a>, by: Number<'a>) -> (Number<'a>, Truth<'a>) {
+        self.layer_at(self.across_layers(layers), layers, by)
+    }
+
+    /// Returns the coordinate across the layers of a volume in 1/256 layer.
+    pub(crate) fn across_layers(&self, layers: Number<'a>) -> Number<'a> {
         let r = self.component(self.sample, 2);
-        let w = match self.place {
+        match self.place {
             Place::Own(Projection::Ratio) => self.ratio(r, self.component(self.sample, 3), layers),
             Place::Own(_) => self.floored(r, layers),
             _ => Number::ZERO,
-        };
+        }
+    }
+
+    /// VOL-1: returns the layer at a coordinate times `by`, and whether it is in the border beyond.
+    pub(crate) fn layer_at(&self, w: Number<'a>, layers: Number<'a>, by: Number<'a>) -> (Number<'a>, Truth<'a>) {
         self.interpolator.code.by("VOL-1");
         self.addressed(self.unit.state.address_r, filter::nearest(w), layers, false, by)
     }

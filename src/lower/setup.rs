@@ -34,11 +34,6 @@ pub struct Setup {
 impl Setup {
     /// Makes the code for the function of a draw's whole pixel.
     pub fn new(plan: &Plan, draw: &PlannedDraw, function: &Function) -> Setup {
-        let code = Code::default();
-        let holds_w = Truth::Known(draw.depth_test.as_ref().is_some_and(|test| test.w_buffer));
-        let fixed_fog = draw.fog.function.map_or(-1, |function| fog::not_finite(function.mode).into());
-        let state = SetupState { holds_w, perspective: Truth::Known(true), fixed_fog: Number::Constant(fixed_fog) };
-        let reader = Reader { code: &code, profile: plan.profile, state };
         let fields = function.inputs().into_iter().filter_map(|input| match input {
             // The offset of DEP-5 is its caller's, and so are points.
             Input::Triangle(Field::Offset | Field::OffsetExponent | Field::Sprite(_) | Field::SpriteSize) => None,
@@ -46,8 +41,22 @@ impl Setup {
             _ => None,
         });
         let fields: BTreeSet<Field> = fields.chain(fields_of_coverage()).collect();
-        let outputs = fields.into_iter().map(|field| (field, reader.field(field))).collect();
-        Setup::from_outputs(code, outputs)
+        Setup::of_fields(plan, draw, &Vec::from_iter(fields))
+    }
+
+    /// Makes the code of all constants of a draw, for a text of every draw.
+    pub fn of_all(plan: &Plan, draw: &PlannedDraw) -> Setup {
+        Setup::of_fields(plan, draw, &Field::all())
+    }
+
+    fn of_fields(plan: &Plan, draw: &PlannedDraw, fields: &[Field]) -> Setup {
+        let holds_w = draw.depth_test.as_ref().is_some_and(|test| test.w_buffer);
+        let fixed_fog = draw.fog.function.map_or(-1, |function| fog::not_finite(function.mode).into());
+        Setup::of_any(plan.profile, fields, |_| SetupState {
+            holds_w: Truth::Known(holds_w),
+            perspective: Truth::Known(draw.perspective),
+            fixed_fog: Number::Constant(fixed_fog),
+        })
     }
 
     /// Makes the code of fields whatever the state, which `state` reads.
@@ -58,11 +67,7 @@ impl Setup {
     ) -> Setup {
         let code = Code::default();
         let reader = Reader { code: &code, profile, state: state(&code) };
-        let outputs = fields.iter().map(|field| (*field, reader.field(*field))).collect();
-        Setup::from_outputs(code, outputs)
-    }
-
-    fn from_outputs(code: Code, outputs: Vec<(Field, Operand)>) -> Setup {
+        let outputs: Vec<_> = fields.iter().map(|field| (*field, reader.field(*field))).collect();
         let (lines, renamed) = code.reachable(&outputs.iter().map(|output| output.1).collect::<Vec<_>>());
         Setup { lines, outputs: outputs.into_iter().map(|(field, operand)| (field, renamed(operand))).collect() }
     }

@@ -15,7 +15,6 @@ use crate::helper::Helper;
 use crate::number::Number;
 use crate::pixel::UNBOUND;
 use crate::place::{Place, Projection, Unit};
-use crate::triangle::Field;
 use crate::truth::Truth;
 use crate::whole::{Interpolator, Sample, Whole};
 
@@ -30,6 +29,17 @@ impl<'a> Single<'a> {
             Some(code) => counted(code, helper, &of),
             None => Number::Constant(helper.compute([a.range().0, b.range().0, 0, 0, 0, 0])),
         })
+    }
+
+    /// Returns the nearest to a number.
+    pub(crate) fn rounded(code: &'a Code, number: Called<'a>) -> Single<'a> {
+        Single(counted(code, Helper::Rounded, &[number.operand(code)]))
+    }
+
+    /// Returns the nearest to a fraction of [`dot::fractions`].
+    pub(crate) fn fraction((numerator, denominator): (Number<'a>, Number<'a>)) -> Single<'a> {
+        let (numerator, denominator) = (numerator.within(-(1 << 16), 1 << 16), denominator.within(1, 1 << 30));
+        Single::called(Helper::SingleQuotient, numerator, denominator)
     }
 
     pub(crate) fn constant(value: f32) -> Single<'a> {
@@ -186,7 +196,7 @@ impl<'a> Stages<'a, '_, '_> {
             ShaderOperation::BumpEnvironment { matrix: [m0, m1, m2, m3], .. } => {
                 let [_, green, blue, _] = self.bytes(previous, state);
                 let entries = [[m0, m3], [m1, m2]].map(|entries| entries.map(Single::constant));
-                Place::Moved(moved(entries, [blue, green]))
+                Place::Moved(entries.map(|entries| moved(entries, [blue, green]).0))
             }
             // DotProductCube and DotReflectDiffuse.
             _ => {
@@ -224,12 +234,12 @@ impl<'a> Interpolator<'a> {
     /// Returns a component of a stage's coordinates.
     fn component(&self, index: usize, n: usize, sample: &Sample<'a>) -> Called<'a> {
         self.code.by("WGT-1");
-        self.linear(|part| Field::Coordinate(index, n, part)).at(sample.b)
+        self.coordinate(index, n, sample)
     }
 
     /// Returns it in single precision.
-    pub(crate) fn rounded(&self, index: usize, n: usize, sample: &Sample<'a>) -> Single<'a> {
-        Single(counted(self.code, Helper::Rounded, &[self.component(index, n, sample).operand(self.code)]))
+    fn rounded(&self, index: usize, n: usize, sample: &Sample<'a>) -> Single<'a> {
+        Single::rounded(self.code, self.component(index, n, sample))
     }
 
     fn parts(&self, index: usize, n: usize, sample: &Sample<'a>) -> Binary<Number<'a>> {
@@ -254,23 +264,10 @@ impl<'a> Interpolator<'a> {
     }
 
     /// TSH-1 to TSH-4: returns the dot product of a stage's coordinates and a colour.
-    pub(crate) fn dot(
-        &self,
-        index: usize,
-        mapping: DotMapping,
-        bytes: [Number<'a>; 4],
-        sample: &Sample<'a>,
-    ) -> Single<'a> {
+    fn dot(&self, index: usize, mapping: DotMapping, bytes: [Number<'a>; 4], sample: &Sample<'a>) -> Single<'a> {
         let coordinates = [0, 1, 2].map(|n| self.rounded(index, n, sample));
         self.code.by("TSH-1");
-        let vector = dot::fractions(mapping, bytes).map(|(numerator, denominator)| {
-            Single::called(
-                Helper::SingleQuotient,
-                numerator.within(-(1 << 16), 1 << 16),
-                denominator.within(1, 1 << 30),
-            )
-        });
-        dot::dot(coordinates, vector)
+        dot::dot(coordinates, dot::fractions(mapping, bytes).map(Single::fraction))
     }
 }
 
@@ -279,11 +276,11 @@ pub(crate) fn byte<'a>(held: Number<'a>, is_doubled: Truth<'a>) -> Number<'a> {
     held.floor_divided(2).low_bits(255).or(is_doubled, held.low_bits(255))
 }
 
-/// TSH-7: returns the displacements by two rows of the matrix and by blue and green, patterns of binary32.
-pub(crate) fn moved<'a>(entries: [[Single<'a>; 2]; 2], blue_green: [Number<'a>; 2]) -> [Number<'a>; 2] {
+/// TSH-7: returns the displacement by a row of the matrix and by blue and green.
+pub(crate) fn moved<'a>(entries: [Single<'a>; 2], blue_green: [Number<'a>; 2]) -> Single<'a> {
     let one = Number::Constant(1);
     let signed = blue_green.map(|byte| Single::called(Helper::SingleQuotient, dot::signed(byte, 8), one));
-    entries.map(|entries| dot::moved(entries, signed).0)
+    dot::moved(entries, signed)
 }
 
 /// TSH-8: returns a channel of a texel that is multiplied by the luminance.

@@ -7,6 +7,9 @@ use crate::kind::{ANY_BINARY, Kind, Range, is_wide, unpacked};
 /// Number of the unit that a printed function has as a parameter.
 pub(crate) const ANY_UNIT: usize = TEXTURE_UNITS;
 
+/// Number of the component that a printed function has as a parameter.
+pub(crate) const ANY_COMPONENT: usize = 4;
+
 fn index_of(unit: usize) -> String {
     if unit == ANY_UNIT { "unit".to_string() } else { unit.to_string() }
 }
@@ -70,6 +73,22 @@ pub enum Field {
 }
 
 impl Field {
+    /// Returns all constants, in the order of the printed structure.
+    pub fn all() -> Vec<Field> {
+        let three = [0, 1, 2];
+        let edges = three.map(Field::EdgeX).into_iter().chain(three.map(Field::EdgeY)).chain(three.map(Field::Edge));
+        let coordinates = (0..16).flat_map(|n| Part::ALL.map(|part| Field::Coordinate(n / 4, n % 4, part)));
+        let depths = three.map(Field::Depth).into_iter();
+        let depths =
+            depths.chain((0..9).map(|n| Field::DepthDifference(n / 3, n % 3))).chain(three.map(Field::DepthRatio));
+        let colors = (0..24).map(|n| Field::Color(n / 12, n / 3 % 4, n % 3));
+        let others = [Field::FogByte, Field::OffsetExponent, Field::Sprite(0), Field::Sprite(1), Field::SpriteSize];
+        let binary =
+            three.map(Field::Ratio).into_iter().chain(coordinates).chain(Part::ALL.map(Field::Fog)).chain(depths);
+        let numbers = [Field::Offset].into_iter().chain(colors).chain(three.map(Field::Owns)).chain(others);
+        edges.chain(binary).chain(numbers).collect()
+    }
+
     /// Returns the kind of the constant.
     pub fn kind(self) -> Kind {
         match self {
@@ -106,6 +125,7 @@ impl Field {
             Field::Ratio(k) => format!("ratio[{k}]"),
             Field::Color(set, channel, k) => format!("color[{set}][{channel}][{k}]"),
             Field::Coordinate(unit, component, part) => {
+                let component = if component == ANY_COMPONENT { "n".to_string() } else { component.to_string() };
                 format!("coordinate[{}][{component}][{}]", index_of(unit), part as usize)
             }
             Field::Fog(part) => format!("fog[{}]", part as usize),

@@ -18,7 +18,7 @@ use crate::code::{Code, Operand};
 use crate::helper::{Helper, Sign};
 use crate::input::Input;
 use crate::number::{Number, Word};
-use crate::triangle::{Field, Part};
+use crate::triangle::{ANY_UNIT, Field, Part};
 use crate::truth::Truth;
 
 /// A sample of a triangle.
@@ -66,6 +66,14 @@ impl<'a> Interpolator<'a> {
     pub(crate) fn linear(&self, of: impl Fn(Part) -> Field) -> Linear<Called<'a>> {
         let part = |part: Part| self.binary(of(part));
         Linear { second: part(Part::Second), first: part(Part::First), third: part(Part::Third) }
+    }
+
+    /// Returns a component of a unit's coordinates; printed functions of any unit have them as a parameter.
+    pub(crate) fn coordinate(&self, unit: usize, n: usize, sample: &Sample<'a>) -> Called<'a> {
+        if unit == ANY_UNIT {
+            return Called::local(self.code, ["own[0]", "own[1]", "own[2]", "own[3]"][n]);
+        }
+        self.linear(|part| Field::Coordinate(unit, n, part)).at(sample.b)
     }
 
     /// Returns the edge functions at a pixel. They are not negative where the pixel is covered.
@@ -122,14 +130,8 @@ impl<'a> Interpolator<'a> {
         })
     }
 
-    /// Returns the fog factor as a byte, by a mode and the parameters of its line, or of the vertices' own factors.
-    pub(crate) fn fog_by(
-        &self,
-        mode: Option<FogMode>,
-        line: [Binary<Number<'a>>; 2],
-        b: [Called<'a>; 3],
-    ) -> Number<'a> {
-        let value = self.linear(Field::Fog).at(b);
+    /// Returns the fog factor as a byte, by a mode, the parameters of its line and the fog coordinate, or by the vertices' own factor.
+    pub(crate) fn fog_by(&self, mode: Option<FogMode>, line: [Binary<Number<'a>>; 2], value: Called<'a>) -> Number<'a> {
         let parts = |value: Called<'a>| value.parts(self.code, (-(1 << 26), 1 << 26));
         let byte = match mode {
             None => {
@@ -237,7 +239,7 @@ impl<'a> Whole<'a, '_> {
             }
         }
         let mode = fog.function.map(|function| function.mode);
-        let byte = self.fog_by(mode, line.map(weights::Number::from_f32), b);
+        let byte = self.fog_by(mode, line.map(weights::Number::from_f32), self.linear(Field::Fog).at(b));
         if mode.is_none() || self.is_fog_finite() { byte } else { self.fog_or_fixed(byte) }
     }
 

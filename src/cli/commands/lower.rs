@@ -16,10 +16,10 @@ pub(crate) struct Arguments {
     /// The scene file, or a pixel program in a file of its own
     #[arg(value_name = "SCENE|PROGRAM", required_unless_present = "generic")]
     source: Option<PathBuf>,
-    /// C99, GLSL: one text for every program, which reads the words of the registers of `--profile` while it runs; Verilog: a module for each step of a pixel. With `--whole`, C99: one text for every draw
+    /// C99, GLSL: one text for every program, which reads the words of the registers of `--profile` while it runs; Verilog: a module for each step of a pixel. With `--whole`, C99, GLSL, WGSL: one text for every draw
     #[arg(long, conflicts_with_all = ["source", "language", "draw", "uniform", "textures", "fragment"])]
     generic: bool,
-    /// With `--generic --to c99`: write ninebit_combiners.h and ninebit_combiners.c, or with `--whole` ninebit_pixels.h and ninebit_pixels.c, to this folder; without it, one text of both goes to stdout. With `--whole --to glsl`: write a vertex and a fragment shader for each draw, drawN.vert and drawN.frag
+    /// With `--generic --to c99`: write ninebit_combiners.h and ninebit_combiners.c, or with `--whole` ninebit_pixels.h and ninebit_pixels.c, to this folder; without it, one text of both goes to stdout. With `--whole --to glsl`: write a vertex and a fragment shader for each draw, drawN.vert and drawN.frag, or with `--generic` for every draw, ninebit_pixels.vert and ninebit_pixels.frag
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -116,21 +116,34 @@ fn generic(arguments: &Arguments) -> Result<(), Failure> {
             Ok(write_below(&folder.join(format!("{name}.c")), source.as_bytes())?)
         }
         (Form::C99, None) => Ok(write_text(&c99().whole())?),
-        _ if arguments.whole => Err(Failure::usage(
+        (Form::Glsl, Some(folder)) if arguments.whole => {
+            let Shaders { vertex, fragment } = text.whole_shaders();
+            write_below(&folder.join("ninebit_pixels.vert"), vertex.as_bytes())?;
+            Ok(write_below(&folder.join("ninebit_pixels.frag"), fragment.as_bytes())?)
+        }
+        (Form::Glsl, None) if arguments.whole => Ok(write_text(&text.whole_glsl())?),
+        (Form::Wgsl, None) if arguments.whole => Ok(write_text(&text.whole_wgsl())?),
+        (Form::Verilog, _) if arguments.whole => Err(Failure::usage(
             "there is no generic text of whole pixels of this form".to_string(),
-            "take `--to c99`, or leave `--whole` or `--generic` out",
+            "take `--to c99`, `--to glsl` or `--to wgsl`, or leave `--whole` or `--generic` out",
         )),
         (Form::Glsl, None) => Ok(write_text(&text.glsl())?),
         (Form::Verilog, None) => Ok(write_text(&text.verilog())?),
-        (Form::Glsl | Form::Verilog, Some(_)) => Err(Failure::usage(
-            "`--output` is for the two files of C99".to_string(),
-            "a shader or modules are one text: leave `--output` out and take it from stdout",
-        )),
+        (Form::Glsl | Form::Verilog, Some(_)) => Err(no_files()),
+        (Form::Wgsl, Some(_)) if arguments.whole => Err(no_files()),
         _ => Err(Failure::usage(
             "there is no generic text of this form".to_string(),
             "take `--to c99`, `--to glsl` or `--to verilog`; every other form needs a scene or a program",
         )),
     }
+}
+
+/// Returns the failure for a text that is one file.
+fn no_files() -> Failure {
+    Failure::usage(
+        "`--output` is for texts of several files".to_string(),
+        "this is one text: leave `--output` out and take it from stdout",
+    )
 }
 
 /// Returns the programs of draws as text or as register words.

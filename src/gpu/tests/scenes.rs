@@ -17,7 +17,7 @@ use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::random::Random;
 use ninebit::state::{Policies, Scene, TextureImage};
-use ninebit_gpu::{Failure, Gpu, Renderer, adapters, difference};
+use ninebit_gpu::{Failure, Gpu, Renderer, Text, adapters, difference};
 use ninebit_test_support::random_scene;
 use proptest::strategy::{Strategy, ValueTree};
 use setting::{any_policies, runner, setting};
@@ -32,6 +32,8 @@ fn main() {
     let trials = vec![
         trial("committed_scenes_have_the_words_of_the_engine", committed),
         trial("random_scenes_have_the_words_of_the_engine", random),
+        trial("one_text_draws_committed_scenes", committed_by_one_text),
+        trial("one_text_draws_random_scenes", random_by_one_text),
         trial("targets_of_another_texel_size_are_converted", converted),
         trial("a_difference_is_found", found),
         trial("adapters_are_chosen_by_number_and_name", chosen),
@@ -47,10 +49,16 @@ fn open() -> Gpu {
     Gpu::open(wanted.as_deref()).unwrap()
 }
 
-/// Draws a scene, and says how it differs from the engine's.
+/// Draws a scene by its own texts, and says how it differs from the engine's.
 fn hold(gpu: &Gpu, scene: &Scene, policies: Policies, what: &str) -> Result<(), Failed> {
+    hold_by(gpu, (scene, what), policies, Text::OfDraw)
+}
+
+/// Draws a scene by texts, and says how it differs from the engine's.
+fn hold_by(gpu: &Gpu, (scene, what): (&Scene, &str), policies: Policies, text: Text) -> Result<(), Failed> {
     let plan = Plan::compile(scene, &PlanOptions { policies, ..PlanOptions::default() }).unwrap();
-    let renderer = Renderer::new(gpu, scene, &plan).map_err(|failure| format!("{what}: {}", failure.text()))?;
+    let plan = text.plan(scene, &plan).unwrap();
+    let renderer = Renderer::new(gpu, scene, &plan, text).map_err(|failure| format!("{what}: {}", failure.text()))?;
     // Twice, since a frame must not depend on the one before.
     for _ in 0..2 {
         renderer.draw().map_err(|failure| format!("{what}: {}", failure.text()))?;
@@ -68,6 +76,15 @@ fn load(path: &Path) -> Option<Scene> {
 }
 
 fn committed() -> Result<(), Failed> {
+    hold_committed(Text::OfDraw, 1)
+}
+
+fn committed_by_one_text() -> Result<(), Failed> {
+    hold_committed(Text::OfEveryDraw, 10)
+}
+
+/// Draws every nth scene of the repository.
+fn hold_committed(text: Text, step: u64) -> Result<(), Failed> {
     let gpu = open();
     let of = |path: &PathBuf| {
         let name = path.to_string_lossy();
@@ -75,23 +92,34 @@ fn committed() -> Result<(), Failed> {
     };
     let all = WalkDir::new(SCENES).sort_by_file_name().into_iter().map(|entry| entry.unwrap().into_path()).filter(of);
     let mut drawn = 0;
-    for path in all.step_by(setting("NINEBIT_WHOLE_EVERY").unwrap_or(1) as usize) {
+    for path in all.step_by(setting("NINEBIT_WHOLE_EVERY").unwrap_or(step) as usize) {
         let Some(scene) = load(&path) else { continue };
         drawn += 1;
-        hold(&gpu, &scene, Policies::DEFAULT, &path.to_string_lossy())?;
+        hold_by(&gpu, (&scene, &path.to_string_lossy()), Policies::DEFAULT, text)?;
     }
     println!("{drawn} scenes");
     if drawn == 0 { Err("no scene was found".into()) } else { Ok(()) }
 }
 
 fn random() -> Result<(), Failed> {
+    hold_random(Text::OfDraw, 300)
+}
+
+fn random_by_one_text() -> Result<(), Failed> {
+    hold_random(Text::OfEveryDraw, 20)
+}
+
+/// Draws random scenes.
+fn hold_random(text: Text, count: u64) -> Result<(), Failed> {
     let (gpu, seed) = (open(), setting("NINEBIT_WHOLE_SEED").unwrap_or(44));
     let (mut runner, mut random) = (runner(seed), Random::seeded(seed));
-    let (scenes, count) = (random_scene::scene(), setting("NINEBIT_GPU_SCENES").unwrap_or(300));
+    let (scenes, count) = (random_scene::scene(), setting("NINEBIT_GPU_SCENES").unwrap_or(count));
     for number in 0..count {
         let scene = scenes.new_tree(&mut runner).unwrap().current();
-        let policies = if number % 2 == 1 { any_policies(&mut random) } else { Policies::DEFAULT };
-        hold(&gpu, &scene, policies, &format!("scene {number} of seed {seed}"))?;
+        // The text for every draw is compiled for each set of policies.
+        let alternatives = if text == Text::OfDraw { number % 2 == 1 } else { number % 100 == 99 };
+        let policies = if alternatives { any_policies(&mut random) } else { Policies::DEFAULT };
+        hold_by(&gpu, (&scene, &format!("scene {number} of seed {seed}")), policies, text)?;
     }
     Ok(())
 }
@@ -104,7 +132,7 @@ fn scene(name: &str) -> Scene {
 /// Returns what a renderer is refused for.
 fn refusal(gpu: &Gpu, scene: &Scene) -> Failure {
     let plan = Plan::compile(scene, &PlanOptions::default()).unwrap();
-    Renderer::new(gpu, scene, &plan).map(|_| ()).unwrap_err()
+    Renderer::new(gpu, scene, &plan, Text::OfDraw).map(|_| ()).unwrap_err()
 }
 
 /// Returns whether a scene reads a target as texels of another size.

@@ -9,9 +9,14 @@ mod pieces;
 mod print;
 mod text;
 mod translation;
+mod wgsl;
 mod whole;
 
-use ninebit::state::{Policies, Profile};
+use ninebit::plan::{Plan, PlannedDraw};
+use ninebit::state::{Level, Policies, Profile, Texels, TextureImage};
+use ninebit_program::registers::unit::{WORDS, Words};
+
+use crate::language::{Language, Shaders};
 
 /// Options of a generic text.
 #[derive(Clone, Copy, Debug)]
@@ -20,6 +25,19 @@ pub struct Generic {
     pub chip: Profile,
     /// Decisions about behaviour that no capture shows.
     pub policies: Policies,
+}
+
+/// Returns a draw whose units have all levels of their images, as memories have them for texts of every draw: plans leave out those that no pixel can
+/// reach.
+pub fn with_all_levels(plan: &Plan, draw: &PlannedDraw) -> PlannedDraw {
+    let mut draw = draw.clone();
+    for unit in &mut draw.units {
+        let image = &plan.textures()[unit.state.texture].image;
+        if let TextureImage::Texels(Texels { width, height, levels, border, .. }) = *image {
+            unit.levels = Level::chain(unit.format, width, height, levels, border).0;
+        }
+    }
+    draw
 }
 
 /// The C files of a generic text.
@@ -55,6 +73,31 @@ impl Generic {
     /// Prints C99 for whole pixels of every draw: from words of state, constants of a triangle and memories of textures to the stored words.
     pub fn whole_c99(&self) -> Sources {
         whole::c99(self)
+    }
+
+    /// Prints GLSL 4.30 and GLSL ES 3.10 for whole pixels of every draw, without the line that gives the version. `ninebit_texel` is the host's; storage
+    /// buffers 0 and 2 have triangles and the [state](Generic::state).
+    pub fn whole_glsl(&self) -> String {
+        whole::shader(self, Language::Glsl)
+    }
+
+    /// Prints WGSL for whole pixels of every draw. `ninebit_texel`, `ninebit_triangles` and `ninebit_state`, which is a `NinebitState`, are the host's.
+    pub fn whole_wgsl(&self) -> String {
+        whole::shader(self, Language::Wgsl)
+    }
+
+    /// Prints shaders for every draw, for hosts that rasterise. Storage buffer 2 has the [state](Generic::state).
+    pub fn whole_shaders(&self) -> Shaders {
+        Shaders::of_every_draw(&self.whole_glsl(), "nb_draw_pixel(ninebit_number")
+    }
+
+    /// Returns the words of the state of whole pixels in the order of its members. `word` returns the word of a method.
+    pub fn state(&self, word: impl Fn(u32) -> u32) -> Vec<u32> {
+        let words =
+            text::words(self.chip).chain(WORDS).flat_map(|Words { method, elements: (count, step), words, .. }| {
+                (0..count as u32 * words as u32).map(move |n| method + n / words as u32 * step + n % words as u32 * 4)
+            });
+        words.map(word).collect()
     }
 
     /// Prints the steps of a pixel as combinational modules of Verilog-2001; connecting them is left to the user.

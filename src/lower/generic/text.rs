@@ -25,13 +25,14 @@ pub(super) fn words(chip: Profile) -> impl Iterator<Item = Words> {
 
 /// How inputs are mapped: shaders compute the mapping, but on a processor a table is faster.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Mapped {
+pub(super) enum Mapped {
     Computed,
     Looked,
 }
 
 pub(super) struct Printer<'g> {
     pub(super) generic: &'g Generic,
+    pub(super) language: Language,
     pub(super) syntax: &'static dyn Syntax,
     words: Vec<Words>,
     /// Length of a value's text above which it has a line of its own.
@@ -54,28 +55,15 @@ static inline int32_t ninebit_greatest(int32_t a, int32_t b) { return a > b ? a 
 ";
 
 pub(super) fn c99(generic: &Generic) -> Sources {
-    let printer = Printer::new(generic, Language::C99.syntax());
+    let printer = Printer::new(generic, Language::C99);
     let header = printer.header("The combiners and raster operations", "NINEBIT_COMBINERS_H", "", "");
     Sources { header, source: printer.source("ninebit_combiners.h", LIMITS), name: "ninebit_combiners" }
 }
 
 pub(super) fn glsl(generic: &Generic) -> String {
-    let printer = Printer::new(generic, Language::Glsl.syntax());
-    let chip = printer.chip();
-    let mut out = format!(
-        "// The combiners and raster operations of the {chip} class, from register words to the stored word.\n"
-    );
-    out.push_str(&ROUNDING.map(|line| format!("// {line}\n")).concat());
-    out.push_str(
-        "// For GLSL 3.30 and GLSL ES 3.00: the line that tells the version stands above.\nprecision highp int;\n\n",
-    );
-    let members = printer.members().replace("uint32_t", "uint");
-    let _ = write!(
-        out,
-        "/* Words as a driver writes them, with the methods that write them. What is not written is 0. */\nstruct NinebitState {{\n{members}}};\n\n\
-         /* What one pixel brings. Colours are R, G, B, A. */\nstruct NinebitInputs {{\n{GLSL_INPUTS}}};\n\n"
-    );
-    out + &translated(&printer.body(Mapped::Computed), 1)
+    let printer = Printer::new(generic, Language::Glsl);
+    let head = printer.shader("The combiners and raster operations", "GLSL 3.30 and GLSL ES 3.00", "");
+    head + &translated(&printer.body(Mapped::Computed), Language::Glsl)
 }
 
 const C99_INPUTS: &str = "    int32_t primary[4];    /* interpolated diffuse, 0 to 255 */
@@ -91,12 +79,19 @@ const GLSL_INPUTS: &str = "    ivec4 primary;    /* interpolated diffuse, 0 to 2
     uint destination; /* the word that the surface holds */
 ";
 
+const WGSL_INPUTS: &str = "    primary: vec4<i32>, // interpolated diffuse, 0 to 255
+    secondary: vec4<i32>, // interpolated specular, 0 to 255
+    fog: vec4<i32>, // fog colour and, in alpha, factor: 0 to 255
+    texture: array<vec4<i32>, 4>, // what each unit yields: 0 to 255, signed channels -256 to 254; a unit that is off: 0, 0, 0, 255
+    destination: u32, // the word that the surface holds
+";
+
 /// Returns an expression for a field of a word.
 pub(super) fn field(word: &str, field: Field) -> String {
     match (field.shift, field.shift + field.bits) {
         (0, _) => format!("{word} & {}u", field.most()),
         (shift, 32) => format!("{word} >> {shift}"),
-        (shift, _) => format!("{word} >> {shift} & {}u", field.most()),
+        (shift, _) => format!("({word} >> {shift}) & {}u", field.most()),
     }
 }
 
@@ -106,14 +101,20 @@ fn is_set(word: &str, name: Field) -> String {
 }
 
 impl<'g> Printer<'g> {
-    fn new(generic: &'g Generic, syntax: &'static dyn Syntax) -> Printer<'g> {
-        Printer { generic, syntax, words: words(generic.chip).collect(), longest: usize::MAX }
+    fn new(generic: &'g Generic, language: Language) -> Printer<'g> {
+        Printer {
+            generic,
+            language,
+            syntax: language.syntax(),
+            words: words(generic.chip).collect(),
+            longest: usize::MAX,
+        }
     }
 
     /// Prints texts of whole pixels.
-    pub(super) fn whole(generic: &'g Generic, syntax: &'static dyn Syntax) -> Printer<'g> {
+    pub(super) fn whole(generic: &'g Generic, language: Language) -> Printer<'g> {
         let words = words(generic.chip).chain(unit::WORDS).collect();
-        Printer { words, longest: FILLED, ..Printer::new(generic, syntax) }
+        Printer { words, longest: FILLED, ..Printer::new(generic, language) }
     }
 
     /// Prints the header of C.
@@ -125,7 +126,29 @@ impl<'g> Printer<'g> {
              /* What one pixel brings. Colours are R, G, B, A. */\nstruct nb_inputs {{\n{C99_INPUTS}}};\n\n{structures}{DECLARATIONS}{declarations}\n\
              #ifdef __cplusplus\n}}\n#endif\n\n#endif\n",
             self.chip(),
-            self.members(),
+            translated(&self.members(), Language::C99),
+        )
+    }
+
+    /// Prints the beginning of a text of GLSL or WGSL, up to what stands before all functions.
+    pub(super) fn shader(&self, what: &str, versions: &str, first: &str) -> String {
+        let rounding = ROUNDING.map(|line| format!("// {line}\n")).concat();
+        let state = format!("struct NinebitState {{\n{}}};", self.members());
+        let (is_wgsl, chip) = (self.language == Language::Wgsl, self.chip());
+        let (version, inputs) = if is_wgsl {
+            (String::new(), WGSL_INPUTS)
+        } else {
+            (
+                format!("// For {versions}: the line that tells the version stands above.\nprecision highp int;\n"),
+                GLSL_INPUTS,
+            )
+        };
+        format!(
+            "// {what} of the {chip} class, from register words to the stored word.\n{rounding}{version}\n\
+             /* Words as a driver writes them, with the methods that write them. What is not written is 0. */\n{}\n\
+             /* What one pixel brings. Colours are R, G, B, A. */\nstruct NinebitInputs {{\n{inputs}}}{}\n\n{first}",
+            translated(&state, self.language),
+            if is_wgsl { "" } else { ";" },
         )
     }
 
@@ -137,7 +160,7 @@ impl<'g> Printer<'g> {
              /* All of a pixel in one function: calls would take half of its time. */\n\
              #if defined(__GNUC__)\n#define NB_FLATTEN __attribute__((flatten))\n#else\n#define NB_FLATTEN\n#endif\n\n{}{}",
             self.method(),
-            translated(&self.body(Mapped::Looked), 0),
+            translated(&self.body(Mapped::Looked), Language::C99),
         )
     }
 
@@ -157,7 +180,7 @@ impl<'g> Printer<'g> {
         let lines = self.words.iter().map(|words| {
             let size = |count: usize| if count > 1 { format!("[{count}]") } else { String::new() };
             let name = format!("{}{}{};", words.name, size(words.elements.0), size(words.words));
-            format!("    uint32_t {name:<24} /* {:#06x} */\n", words.method)
+            format!("    @uint {name:<24} /* {:#06x} */\n", words.method)
         });
         lines.collect()
     }
@@ -190,7 +213,7 @@ impl<'g> Printer<'g> {
     }
 
     /// Returns all functions, each declared before it is called.
-    fn body(&self, inputs: Mapped) -> String {
+    pub(super) fn body(&self, inputs: Mapped) -> String {
         let mut out = String::new();
         for piece in pieces(self.generic.policies) {
             match (inputs, piece.name) {
@@ -377,7 +400,7 @@ impl<'g> Printer<'g> {
         // The bits that both codes have; no other register has all of them.
         let both = layout::REGISTER.put(sum & product);
         let lowest = layout::BYTES.iter().fold(0, |all, byte| all | byte.put(both & both.wrapping_neg()));
-        let others = (1..both.count_ones()).map(|n| format!("final0 >> {n} & ")).collect::<String>();
+        let others = (1..both.count_ones()).map(|n| format!("(final0 >> {n}) & ")).collect::<String>();
         let lerp = !layout::BYTES[3].put(255);
         let _ = write!(
             out,
@@ -408,7 +431,7 @@ fn operands(inputs: Mapped) -> String {
     let register = field("byte", layout::REGISTER);
     let is_alpha = is_set("byte", layout::ALPHA);
     let (mapping, invert) = (field("byte", layout::MAPPING), field("byte", layout::INVERT));
-    let one = format!("r[{register}][{is_alpha} ? {alpha} : {blue}]");
+    let one = format!("r[{register}][@select({is_alpha}, {alpha}, {blue})]");
     // The input of an RGB portion, where `of` returns the expression for a channel.
     let all = |of: &dyn Fn(&str) -> String| {
         let each = |channel: &str| format!("for (@int c = 0; c < 3; c++) x[c] = {};", of(channel));
@@ -463,6 +486,6 @@ fn store() -> String {
          \x20       for (@int c = 0; c < 4; c++) channels[c] = nb_blended({equation}, source[c], held[c], factors[c], other[c]);\n    }}\n\
          \x20   return (destination & ~mask) | (nb_packed(format, channels) & mask); /* ROP-6 */\n}}\n\n\
          @flatten@public @uint nb_pixel(@state, @inputs)\n{{\n    @int fragment[4];\n    nb_fragment(state, inputs, fragment);\n\
-         \x20   return nb_kept(state, fragment) != 0 ? nb_stored(state, fragment, @i.destination) : @i.destination;\n}}\n",
+         \x20   return @select(nb_kept(state, fragment) != 0, nb_stored(state, fragment, @i.destination), @i.destination);\n}}\n",
     )
 }

@@ -26,6 +26,7 @@ use crate::input::Input;
 use crate::kind::is_wide;
 use crate::pixel::{Function, Result};
 pub use pair::Shaders;
+pub(crate) use pair::TRIANGLES;
 pub use whole::Draw;
 pub(crate) use wide::Wide;
 use wide::wide_operation;
@@ -395,7 +396,9 @@ impl<'f> Body<'f> {
             Operation::Exponent(a) => Text::Term(syntax.part(term(a), true)),
             Operation::Difference(a, b) => syntax.call(Call::Named("difference"), &self.open([a, b], kind)),
             Operation::Call(helper, _) => {
-                syntax.call(Call::Named(helper.about().0), &self.arguments(helper, operation))
+                let text = syntax.call(Call::Named(helper.about().0), &self.arguments(helper, operation));
+                let narrows = helper.kind() == Kind::Number && is_wide(helper.range()) && !is_wide(line.range);
+                if narrows { Text::Term(syntax.narrowed(text.open())) } else { text }
             }
         };
         (text, rules)

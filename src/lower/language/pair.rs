@@ -38,10 +38,13 @@ const FETCH: &str = "// NINEBIT_FETCH: held words come by framebuffer fetch, oth
 #endif
 ";
 
-/// What a fragment shader reads. Texture memory begins with the words at which the units' memories begin.
-const BINDINGS: &str = "
+/// The constants of triangles.
+pub(crate) const TRIANGLES: &str = "
 layout(std430, binding = 0) readonly buffer NinebitTriangles { NinebitTriangle ninebit_triangles[]; };
-// The first four words say where the memory of each unit begins.
+";
+
+/// What a fragment shader reads besides. Texture memory begins with the words at which the units' memories begin.
+const BINDINGS: &str = "// The first four words say where the memory of each unit begins.
 layout(std430, binding = 1) readonly buffer NinebitMemory { uint ninebit_memory[]; };
 uint ninebit_texel(int unit, int at) { return ninebit_memory[ninebit_memory[unit] + uint(at)]; }
 layout(location = 0) flat in int ninebit_number;
@@ -50,8 +53,18 @@ layout(location = 0) flat in int ninebit_number;
 impl Shaders {
     /// Prints the shaders of a draw.
     pub fn new(draw: &Draw<'_>) -> Shaders {
-        let text = Language::Glsl.print_whole(std::slice::from_ref(draw)).unwrap_or_default();
-        let surfaces = surfaces(draw.function);
+        let text = Language::Glsl.print_whole(std::slice::from_ref(draw)).unwrap_or_default() + TRIANGLES;
+        let call = format!("{}(ninebit_triangles[ninebit_number]", draw.name);
+        Shaders::from_text(&text, &call, surfaces(draw.function))
+    }
+
+    /// Prints shaders by a text for every draw, which declares the constants of triangles, and the beginning of a call of its function.
+    pub(crate) fn of_every_draw(text: &str, call: &str) -> Shaders {
+        let both = [("word", "words"), ("depth", "depths")];
+        Shaders::from_text(text, call, both.map(|(one, all)| Surface { one, all, read: true, written: true }))
+    }
+
+    fn from_text(text: &str, call: &str, surfaces: [Surface; 2]) -> Shaders {
         let each = |of: &dyn Fn(usize, &Surface) -> String| -> String {
             surfaces.iter().enumerate().map(|(n, surface)| of(n, surface)).collect()
         };
@@ -75,7 +88,6 @@ impl Shaders {
         });
         let written =
             each(&|_, s| if s.written { format!("    ninebit_stored_{0} = {0};\n", s.one) } else { String::new() });
-        let name = &draw.name;
         let fragment = format!(
             "{VERSION}{FETCH}{text}{BINDINGS}{kept}#ifdef NINEBIT_FETCH\n{fetched}#else\n{copied}#endif
 
@@ -89,7 +101,7 @@ void main()
 #ifdef NINEBIT_FETCH
 {read}#else
 {looked_up}#endif
-    {name}(ninebit_triangles[ninebit_number], at.x, at.y, word, depth);
+    {call}, at.x, at.y, word, depth);
 {written}}}
 "
         );

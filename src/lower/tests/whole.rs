@@ -74,6 +74,15 @@ enum Way {
     Pair,
     /// By the generic text in C.
     Generic,
+    /// By the shaders of the generic text, which OpenGL draws.
+    GenericPair,
+}
+
+impl Way {
+    /// Returns whether one text draws every draw.
+    fn is_generic(self) -> bool {
+        matches!(self, Way::Generic | Way::GenericPair)
+    }
 }
 
 /// Draws a scene by its functions and compares it.
@@ -81,7 +90,7 @@ enum Way {
 /// # Errors
 /// Why it is left out.
 fn hold(scene: &Scene, policies: Policies, (way, programs): (Way, &mut Programs), what: &str) -> Result<(), String> {
-    let plan = Plan::compile(scene, &PlanOptions { policies, prune: way != Way::Generic }).unwrap();
+    let plan = Plan::compile(scene, &PlanOptions { policies, prune: !way.is_generic() }).unwrap();
     let printed = Printed::new(scene, &plan);
     let folder = tempfile::tempdir().unwrap();
     let found = match way {
@@ -91,13 +100,20 @@ fn hold(scene: &Scene, policies: Policies, (way, programs): (Way, &mut Programs)
             printed.validated(folder.path()).unwrap_or_else(|error| panic!("{what}: {error}"));
             return Ok(());
         }
-        Way::Pair if !printed.is_plain() => return Err("no triangles".to_string()),
+        Way::Pair | Way::GenericPair if !printed.is_plain() => return Err("no triangles".to_string()),
         Way::Pair => printed.paired(folder.path()).unwrap_or_else(|error| panic!("{what}: {error}")),
-        Way::Generic => match printed.generic(folder.path(), programs) {
-            Ok(frames) => frames,
-            Err((true, reason)) => return Err(reason),
-            Err((false, error)) => panic!("{what}: {error}"),
-        },
+        Way::Generic | Way::GenericPair => {
+            let drawn = if way == Way::Generic {
+                printed.generic(folder.path(), programs)
+            } else {
+                printed.paired_generic(folder.path())
+            };
+            match drawn {
+                Ok(frames) => frames,
+                Err((true, reason)) => return Err(reason),
+                Err((false, error)) => panic!("{what}: {error}"),
+            }
+        }
         Way::Wgsl if !printed.is_plain() || printed.comparisons() > MAX_COMPARISONS => {
             return Err("too large".to_string());
         }
@@ -221,6 +237,15 @@ fn printed_shaders_draw_scenes() {
     }
 }
 
+#[test]
+fn generic_shaders_draw_scenes() {
+    if works(&python(), &["-c", "import moderngl, numpy"]) {
+        hold_committed(Way::GenericPair, setting("NINEBIT_WHOLE_EVERY").unwrap_or(110) as usize);
+        let count = setting("NINEBIT_WHOLE_SCENES").unwrap_or(200) / 100;
+        hold_random(Way::GenericPair, setting("NINEBIT_WHOLE_SEED").unwrap_or(46), count);
+    }
+}
+
 /// Draws random scenes. Returns how many were drawn.
 fn hold_random(way: Way, seed: u64, count: u64) -> u64 {
     let (mut runner, mut random, mut drawn) = (runner(seed), Random::seeded(seed), 0);
@@ -229,7 +254,7 @@ fn hold_random(way: Way, seed: u64, count: u64) -> u64 {
     for number in 0..count {
         let scene = scenes.new_tree(&mut runner).unwrap().current();
         // The generic text is compiled for each set of policies.
-        let alternatives = if way == Way::Generic { number % 100 == 99 } else { number % 2 == 1 };
+        let alternatives = if way.is_generic() { number % 100 == 99 } else { number % 2 == 1 };
         let policies = if alternatives { any_policies(&mut random) } else { Policies::DEFAULT };
         match hold(&scene, policies, (way, &mut programs), &format!("scene {number} of seed {seed}")) {
             Ok(()) => drawn += 1,

@@ -164,12 +164,24 @@ pub fn reflect<N: Number>(normal: Vector<N>, eye: Vector<N>) -> Reflection<N> {
     reflect_about(normal, dot(normal, normal), eye)
 }
 
+/// TSH-5: returns the scale of a reflection, by n . e.
+#[inline(always)]
+pub fn scale<N: Number>(toward: N) -> N {
+    N::TWO * toward
+}
+
+/// TSH-5: returns a component of a reflection, by those of the normal and the eye vector.
+#[inline(always)]
+pub fn reflected<N: Number>([scale, square]: [N; 2], [normal, eye]: [N; 2]) -> N {
+    scale * normal - square * eye
+}
+
 /// TSH-5: reflects the eye vector about a normal, of which `square` counts as the squared length.
 #[inline(always)]
 pub fn reflect_about<N: Number>(normal: Vector<N>, square: N, eye: Vector<N>) -> Reflection<N> {
     let toward = dot(normal, eye);
-    let scale = N::TWO * toward;
-    let component = |n: usize| scale * normal[n] - square * eye[n];
+    let scale = scale(toward);
+    let component = |n: usize| reflected([scale, square], [normal[n], eye[n]]);
     let vector = [component(0), component(1), component(2)];
     Reflection { toward, square, scale, vector }
 }

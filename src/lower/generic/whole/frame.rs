@@ -13,12 +13,13 @@ use ninebit_program::registers::unit::{FOG_MODES, SHADOW_FUNCTIONS, STENCIL_OPER
 use crate::generic::pieces::{Case, Maker, Piece, Reader, piece};
 use crate::input::Input;
 use crate::number::Number;
+use crate::triangle::Field;
 use crate::whole::Outcome;
 
 const E: [&str; 3] = ["e[0]", "e[1]", "e[2]"];
 /// The range of edge functions.
 const EDGE: (i64, i64) = (-(1 << 41), 1 << 41);
-const V: [&str; 2] = ["v[0]", "v[1]"];
+const V: [&str; 2] = ["v[0]", "@narrow(v[1])"];
 /// The range of depths.
 const DEPTH: (i64, i64) = (0, 0xff_ffff);
 const BYTE: (i64, i64) = (0, 255);
@@ -30,15 +31,15 @@ fn weights<'a>(reader: &Reader<'a>) -> Vec<Number<'a>> {
 
 /// FOG-2: returns the byte by a mode; that of a line whose parameters are not finite is fixed.
 fn fog_byte<'a>(reader: &Reader<'a>, mode: Option<FogMode>) -> Number<'a> {
-    let (of, sample) = (reader.interpolator(), reader.sample());
+    let (of, value) = (reader.interpolator(), reader.binary("coordinate"));
     let none = [Binary::whole(Number::ZERO); 2];
-    let Some(mode) = mode else { return of.fog_by(None, none, sample.b) };
+    let Some(mode) = mode else { return of.fog_by(None, none, value) };
     if !mode.is_linear() {
-        return of.fog_or_fixed(of.fog_by(Some(mode), none, sample.b));
+        return of.fog_or_fixed(of.fog_by(Some(mode), none, value));
     }
     let line = reader.patterns(["p0", "p1"]);
     let [p0, p1] = line.map(|pattern| reader.number_of(pattern).parts(reader.code, (-(1 << 24), 1 << 24)));
-    let byte = of.fog_or_fixed(of.fog_by(Some(mode), [p0, p1], sample.b));
+    let byte = of.fog_or_fixed(of.fog_by(Some(mode), [p0, p1], value));
     reader.code.by("FOG-5");
     let [first, second] = line.map(single::is_finite);
     byte.or(first & second, Number::Constant(not_finite(mode).into()))
@@ -68,6 +69,10 @@ fn attributes(maker: &Maker) -> Vec<Piece> {
         [0, 1].map(|set| of.color(set, both)).concat()
     });
     let fog = fog_cases(maker, |reader, mode| vec![fog_byte(reader, mode)]);
+    let coordinate = maker.case(0, "", |reader| {
+        let of = reader.interpolator().linear(Field::Fog);
+        vec![reader.result(of.at(reader.sample().b))]
+    });
     let fixed = fog_cases(maker, |_, mode| vec![Number::Constant(mode.map_or(-1, |mode| not_finite(mode).into()))]);
     let sample = "@triangle, @in @binary b[4]";
     vec![
@@ -84,10 +89,11 @@ fn attributes(maker: &Maker) -> Vec<Piece> {
         piece(
             "nb_fog",
             "The fog factor as a byte, by the mode.",
-            "@triangle, @in @binary b[4], @long p0, @long p1",
+            "@triangle, @binary coordinate, @long p0, @long p1",
             fog,
         )
         .by("mode"),
+        piece("nb_fog_coordinate", "The fog coordinate.", sample, vec![coordinate]).binary(),
         piece("nb_fixed_fog", "The fog byte where a coordinate is not finite; -1 if there is none.", "", fixed)
             .by("mode"),
     ]
@@ -99,7 +105,7 @@ fn depths(maker: &Maker) -> Vec<Piece> {
     });
     let moved = maker.case(0, "", |reader| {
         let depth = Binary {
-            mantissa: reader.local(V[0], (-(1 << 31) + 1, (1 << 31) - 1)),
+            mantissa: reader.local("@narrow(v[0])", (-(1 << 31) + 1, (1 << 31) - 1)),
             exponent: reader.local(V[1], crate::code::EXPONENT),
         };
         reader.parts(reader.interpolator().depth_moved(depth))

@@ -14,13 +14,13 @@ use ninebit_program::registers::unit as words;
 
 use super::pieces::{Maker, Piece};
 use super::print::pieces_text;
-use super::text::{Printer, field};
-use super::translation::translated;
+use super::text::{Mapped, Printer, field};
+use super::translation::{global, replaced, translated};
 use super::{Generic, Sources};
 use crate::code::Line;
 use crate::draw::QUAD;
 use crate::input::{Input, Local};
-use crate::language::{Language, STRUCTURES, shared, statements};
+use crate::language::{Language, STRUCTURES, TRIANGLES, shared, statements};
 use crate::number::Number;
 use crate::order::Block;
 use crate::setup::{Setup, SetupState};
@@ -117,29 +117,14 @@ fn constants() -> Vec<(String, u32)> {
     all.into_iter().map(|(name, value)| (format!("${name}"), value)).collect()
 }
 
-/// Replaces each `$NAME(` of a text and what follows up to its parenthesis.
-fn replaced(text: &str, name: &str, of: impl Fn(&str) -> String) -> String {
-    let (start, mut out, mut rest) = (format!("${name}("), String::new(), text);
-    while let Some((before, after)) = rest.split_once(&start) {
-        let mut depth = 1;
-        let end = after.char_indices().find(|(_, c)| {
-            depth += i32::from(*c == '(') - i32::from(*c == ')');
-            depth == 0
-        });
-        let end = end.map_or(after.len(), |(end, _)| end);
-        out.push_str(before);
-        out.push_str(&of(&after[..end]));
-        rest = after.get(end + 1..).unwrap_or_default();
-    }
-    out + rest
-}
-
 /// Returns the text with the numbers of its fields and codes.
 fn numbered(text: &str) -> String {
     let signed = words::SIGNED.iter().enumerate().map(|(n, bits)| (format!("SIGNED{n}"), *bits));
     let fields = FIELDS.iter().map(|(name, bits)| (name.to_string(), *bits)).chain(signed);
-    let text = fields.fold(text.to_string(), |text, (name, bits)| replaced(&text, &name, |word| field(word, bits)));
-    let text = replaced(&text, "QUAD", |at| format!("({at} & {QUAD})"));
+    let text = fields.fold(text.to_string(), |text, (name, bits)| {
+        replaced(&text, &format!("${name}("), |word| format!("({})", field(word, bits)))
+    });
+    let text = replaced(&text, "$QUAD(", |at| format!("({at} & {QUAD})"));
     constants().into_iter().fold(text, |text, (name, value)| text.replace(&name, &format!("{value}u")))
 }
 
@@ -150,16 +135,9 @@ fn pieces(generic: &Generic) -> Vec<Piece> {
 
 /// The fields that set-up makes once, and those of each unit.
 fn fields() -> [Vec<Field>; 2] {
-    let three = [0, 1, 2];
-    let edges = three.iter().flat_map(|k| [Field::EdgeX(*k), Field::EdgeY(*k), Field::Edge(*k), Field::Owns(*k)]);
-    let depths = three.iter().flat_map(|k| [Field::Ratio(*k), Field::Depth(*k), Field::DepthRatio(*k)]);
-    let differences = three.iter().flat_map(|r| three.map(|k| Field::DepthDifference(*r, k)));
-    let colors = (0..24).map(|n| Field::Color(n / 12, n / 3 % 4, n % 3));
-    let fog = Part::ALL.map(Field::Fog).into_iter().chain([Field::FogByte]);
-    let callers = [Field::Offset, Field::OffsetExponent, Field::Sprite(0), Field::Sprite(1), Field::SpriteSize];
-    let once = edges.chain(depths).chain(differences).chain(colors).chain(fog).chain(callers).collect();
+    let is_once = |field: &Field| !matches!(field, Field::Coordinate(..));
     let of_unit = (0..4).flat_map(|n| Part::ALL.map(|part| Field::Coordinate(ANY_UNIT, n, part))).collect();
-    [once, of_unit]
+    [Field::all().into_iter().filter(is_once).collect(), of_unit]
 }
 
 fn set_ups(generic: &Generic) -> [Setup; 2] {
@@ -193,7 +171,7 @@ int nb_draw_pixel(const struct nb_state *state, const struct ninebit_triangle *t
 ";
 
 pub(super) fn c99(generic: &Generic) -> Sources {
-    let printer = Printer::whole(generic, Language::C99.syntax());
+    let printer = Printer::whole(generic, Language::C99);
     let pieces = pieces(generic);
     let [once, of_unit] = set_ups(generic);
     let lines = || lines(&pieces).chain(&once.lines).chain(&of_unit.lines);
@@ -211,11 +189,29 @@ pub(super) fn c99(generic: &Generic) -> Sources {
     );
     let source = printer.source("ninebit_pixels.h", &shared(Language::C99, lines))
         + "static inline uint32_t nb_texel(const uint32_t *const texture[4], uint32_t unit, int32_t at) { return texture[unit][at]; }\n\n"
-        + &translated(&pieces_text(&printer, &pieces), 0)
+        + &translated(&pieces_text(&printer, &pieces), Language::C99)
         + &set_up
-        + &translated(&numbered(include_str!("pixel.text")), 0);
+        + &translated(&numbered(include_str!("pixel.text")), Language::C99);
     Sources { header, source, name: "ninebit_pixels" }
 }
+
+pub(super) fn shader(generic: &Generic, language: Language) -> String {
+    let printer = Printer::whole(generic, language);
+    let pieces = pieces(generic);
+    let calls = shared(language, || lines(&pieces)) + "\n";
+    let text =
+        printer.body(Mapped::Computed) + "\n" + &pieces_text(&printer, &pieces) + &numbered(include_str!("pixel.text"));
+    let before = match language {
+        Language::Wgsl => calls + "fn nb_long(word: u32) -> vec2<u32> { return vec2<u32>(word, 0u); }\n\n",
+        _ => calls + TRIANGLES + BUFFERS,
+    };
+    printer.shader("Whole pixels", "GLSL 4.30 and GLSL ES 3.10", &before) + &translated(&global(&text), language)
+}
+
+const BUFFERS: &str = "layout(std430, binding = 2) readonly buffer NinebitDraw { NinebitState ninebit_state; };
+uvec2 nb_long(uint word) { return uvec2(word, 0u); }
+
+";
 
 fn lines(pieces: &[Piece]) -> impl Iterator<Item = &Line> {
     pieces.iter().flat_map(|piece| &piece.cases).flat_map(|case| &case.lines)

@@ -6,19 +6,18 @@ use ninebit::state::{CompareFunction, ShaderStage, TextureFormat, TextureKind, T
 use ninebit::texture::planned::PlannedUnit;
 
 use crate::binary::Called;
-use crate::code::{ANY_BINARY, EXPONENT, Kind, Range};
+use crate::code::{EXPONENT, Range};
 use crate::coordinates::Facing;
 use crate::generic::pieces::Reader;
 use crate::helper::Helper;
-use crate::input::{Input, Local};
 use crate::number::Number;
 use crate::place::{Place, Unit};
 use crate::triangle::ANY_UNIT;
 use crate::truth::Truth;
 use crate::whole::{Interpolator, Sample};
 
-/// A unit's parameters: triangle, unit and weights.
-pub(super) const AT: &str = "@triangle, @uint unit, @in @binary b[4]";
+/// The coordinates of a unit.
+pub(super) const OWN: &str = "@in @binary own[4]";
 
 /// The range of lanes: bytes and halves, which may be signed.
 pub(super) const LANE: Range = (-(1 << 15), (1 << 16) - 1);
@@ -36,8 +35,7 @@ impl<'a> Reader<'a> {
 
     /// Returns a binary number.
     pub(super) fn binary(&self, name: &'static str) -> Called<'a> {
-        let input = Input::Local(Local { name, kind: Kind::Binary, range: ANY_BINARY });
-        Called::from_line(self.code, self.code.input(input, ANY_BINARY))
+        Called::local(self.code, name)
     }
 
     /// Returns the truth of a flag.
@@ -71,7 +69,7 @@ impl<'a> Reader<'a> {
 
     /// Returns the sample whose weights are parameters.
     pub(super) fn sample(&self) -> Sample<'a> {
-        let [first, second, third, sum] = ["b[0]", "b[1]", "b[2]", "b[3]"].map(|name| self.binary(name));
+        let [first, second, third, sum] = ["b[0]", "b[1]", "b[2]", "sum"].map(|name| self.binary(name));
         Sample { b: [first, second, third], sum }
     }
 

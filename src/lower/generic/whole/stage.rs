@@ -6,11 +6,11 @@ use ninebit::texture::shader::finite_vector;
 use ninebit::texture::stage::{PlannedShader, PlannedShaderStage};
 use ninebit_program::registers::unit::DOT_MAPPINGS;
 
-use super::reader::{AT, planned};
+use super::reader::{OWN, planned};
 use super::unit::{CLASSES, SIGNS, copied};
 use crate::generic::pieces::{Case, Maker, Piece, piece};
 use crate::stage::{Single, byte, lit, moved};
-use crate::triangle::ANY_UNIT;
+use crate::triangle::{ANY_COMPONENT, ANY_UNIT, Field};
 
 const REGISTER: (i64, i64) = (-256, 255);
 const NORMAL: [&str; 3] = ["normal[0]", "normal[1]", "normal[2]"];
@@ -65,41 +65,56 @@ pub(super) fn pieces(maker: &Maker) -> Vec<Piece> {
         reader.code.by("TSH-1");
         vec![byte(reader.local("held", REGISTER), reader.truth("is_doubled"))]
     });
-    let dots = DOT_MAPPINGS
+    let fractions = DOT_MAPPINGS
         .iter()
         .map(|(mapping, code)| {
             maker.case(*code, mapping.name(), |reader| {
+                reader.code.by("TSH-1");
                 let bytes = reader.all(["bytes[0]", "bytes[1]", "bytes[2]", "bytes[3]"], (0, 255));
-                vec![reader.interpolator().dot(ANY_UNIT, *mapping, bytes, &reader.sample()).0]
+                dot::fractions(*mapping, bytes).into_iter().flat_map(|(n, d)| [n, d]).collect()
             })
         })
         .collect();
-    let eye = maker.case(0, "", |reader| vec![reader.interpolator().rounded(ANY_UNIT, 3, &reader.sample()).0]);
+    let component = maker.case(0, "", |reader| {
+        let [b0, b1, b2] = ["b[0]", "b[1]", "b[2]"].map(|name| reader.binary(name));
+        let of = reader.interpolator().linear(|part| Field::Coordinate(ANY_UNIT, ANY_COMPONENT, part));
+        reader.code.by("WGT-1");
+        vec![reader.result(of.at([b0, b1, b2]))]
+    });
+    let rounded = maker.case(0, "", |reader| vec![Single::rounded(reader.code, reader.binary("number")).0]);
+    let fraction = maker.case(0, "", |reader| {
+        reader.code.by("TSH-1");
+        let (n, d) = (reader.local("numerator", (-(1 << 16), 1 << 16)), reader.local("denominator", (1, 1 << 30)));
+        vec![Single::fraction((n, d)).0]
+    });
+    let product = maker.case(0, "", |reader| {
+        reader.code.by("TSH-1");
+        let [m, n] = [["m[0]", "m[1]", "m[2]"], ["n[0]", "n[1]", "n[2]"]].map(|of| reader.patterns(of).map(Single));
+        vec![dot::dot(m, n).0]
+    });
     let finite = maker.case(0, "", |reader| {
         reader.code.by("TEX-13");
         finite_vector(reader.patterns(NORMAL)).to_vec()
     });
     let reflected = maker.case(0, "", |reader| {
-        let [normal, eye] = [NORMAL, ["eye[0]", "eye[1]", "eye[2]"]].map(|names| reader.patterns(names).map(Single));
-        let vector = dot::reflect(normal, eye).vector;
-        reader.code.by("TEX-13");
-        finite_vector(vector.map(|component| component.0)).to_vec()
+        reader.code.by("TSH-5");
+        let [toward, square, normal, eye] = reader.patterns(["toward", "square", "normal", "eye"]).map(Single);
+        vec![dot::reflected([dot::scale(toward), square], [normal, eye]).0]
     });
     let bumped = maker.case(0, "", |reader| {
-        let m = reader.patterns(["m[0]", "m[1]", "m[2]", "m[3]"]).map(Single);
-        let blue_green = reader.all(["bytes[2]", "bytes[1]"], (0, 255));
-        moved([[m[0], m[3]], [m[1], m[2]]], blue_green).to_vec()
+        reader.code.by("TSH-7");
+        vec![moved(reader.patterns(["m", "n"]).map(Single), reader.all(["blue", "green"], (0, 255))).0]
     });
     let lit = maker.case(0, "", |reader| {
         let line = reader.patterns(["scale", "offset"]).map(|pattern| reader.number_of(pattern).operand(reader.code));
         vec![lit(reader.code, reader.local("channel", REGISTER), reader.local("red", (0, 255)), line)]
     });
     vec![
-        piece("nb_passed", "Coordinates as a colour.", AT, vec![passed]).filling("loaded[4]"),
+        piece("nb_passed", "Coordinates as a colour.", OWN, vec![passed]).filling("loaded[4]"),
         piece(
             "nb_drops",
             "Whether a coordinate has a sign that is dropped.",
-            "@triangle, @uint unit, @in @binary b[4], @in @int not_negative[4]",
+            "@in @binary own[4], @in @int not_negative[4]",
             vec![drops],
         ),
         piece("nb_doubled", "The channels of a register that hold twice their byte.", "@in @int signs[4]", doubled)
@@ -107,24 +122,37 @@ pub(super) fn pieces(maker: &Maker) -> Vec<Piece> {
             .filling("doubled[4]"),
         piece("nb_byte", "The byte of a channel of a register.", "@int held, @int is_doubled", vec![bytes]),
         piece(
-            "nb_dot",
-            "A dot product of coordinates and a colour.",
-            "@triangle, @uint unit, @in @binary b[4], @in @int bytes[4]",
-            dots,
+            "nb_component",
+            "A component of a unit's coordinates.",
+            "@triangle, @uint unit, @int n, @in @binary b[4]",
+            vec![component],
         )
-        .by("mapping"),
-        piece("nb_eye", "A component of the eye vector.", AT, vec![eye]),
+        .binary(),
+        piece(
+            "nb_fractions",
+            "What the bytes of a colour stand for: numerators and denominators.",
+            "@in @int bytes[4]",
+            fractions,
+        )
+        .by("mapping")
+        .filling("fractions[6]"),
+        piece("nb_rounded", "A number in binary32.", "@binary number", vec![rounded]),
+        piece("nb_fraction", "A fraction in binary32.", "@int numerator, @int denominator", vec![fraction]),
+        piece("nb_dot", "A dot product.", "@in @long m[3], @in @long n[3]", vec![product]),
         piece("nb_finite", "A vector; 0 if a component is not finite.", "@in @long normal[3]", vec![finite])
             .filling("given[3]"),
         piece(
             "nb_reflected",
-            "The eye vector reflected about a normal.",
-            "@in @long normal[3], @in @long eye[3]",
+            "A component of a reflection, by n . e and n . n.",
+            "@long toward, @long square, @long normal, @long eye",
             vec![reflected],
-        )
-        .filling("given[3]"),
-        piece("nb_bumped", "Displacements in 128ths of the image.", "@in @long m[4], @in @int bytes[4]", vec![bumped])
-            .filling("given[3]"),
+        ),
+        piece(
+            "nb_bumped",
+            "A displacement in 128ths of the image.",
+            "@long m, @long n, @int blue, @int green",
+            vec![bumped],
+        ),
         piece(
             "nb_lit",
             "A channel times the luminance.",

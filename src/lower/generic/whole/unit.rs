@@ -8,7 +8,7 @@ use ninebit::texture::lod::Selection;
 use ninebit::texture::planned::PlannedUnit;
 use ninebit_program::registers::unit::{ADDRESS_MODES, COLOR_KEYS, FORMATS, MIN_FILTERS};
 
-use super::reader::{AT, LANE, plain, planned};
+use super::reader::{LANE, OWN, plain, planned};
 use crate::coordinates::{log2_ratio, pairs_of_quad};
 use crate::generic::pieces::{Case, Maker, Piece, Reader, piece};
 use crate::input::Input;
@@ -49,7 +49,7 @@ const LEVEL: (i64, i64) = (0, 15);
 /// The range of coordinates of quads.
 const FAR: (i64, i64) = (-(1 << 61) - (1 << 32), (1 << 61) + (1 << 32));
 
-const QUAD: [[&str; 2]; 3] = [["quad[0][0]", "quad[0][1]"], ["quad[1][0]", "quad[1][1]"], ["quad[2][0]", "quad[2][1]"]];
+const QUAD: [[&str; 2]; 3] = [["quad[0]", "quad[1]"], ["quad[2]", "quad[3]"], ["quad[4]", "quad[5]"]];
 
 /// Returns the place of a unit by a way.
 fn place<'a>(maker: &Maker, reader: &Reader<'a>, way: Way) -> (Place<'a>, bool) {
@@ -150,17 +150,23 @@ fn coordinates(maker: &Maker) -> Vec<Piece> {
     let layer = by_mode(maker, 1, |reader, unit| {
         let layers = reader.local("layers", (1, 512));
         let place = (Place::Own(Projection::Ratio), false);
-        let (layer, beyond) = reader.on(unit, place, |unit| unit.layer(layers, Number::Constant(1)));
+        let w = reader.local("w", COORDINATE);
+        let (layer, beyond) = reader.on(unit, place, |unit| unit.layer_at(w, layers, Number::Constant(1)));
         vec![layer, reader.flag(beyond)]
+    });
+    let across = maker.case(0, "", |reader| {
+        let (layers, place) = (reader.local("layers", (1, 512)), (Place::Own(Projection::Ratio), false));
+        vec![reader.on(&plain(), place, |unit| unit.across_layers(layers)).within(COORDINATE.0, COORDINATE.1)]
     });
     let third = maker.case(0, "", |reader| {
         let place = (Place::Own(Projection::Ratio), false);
         let third = reader.on(&plain(), place, |unit| unit.third(Projection::Ratio));
         reader.parts(third)
     });
-    let placed = "@triangle, @uint unit, @in @binary b[4], @in @long given[3], @in @binary d[3], @in @int facing[4], @int x, @int y, @int width, @int height";
+    let placed = "@triangle, @in @binary own[4], @in @long given[3], @in @binary d[3], @in @int facing[4], @int x, @int y, @int width, @int height";
+    let far_placed = "@triangle, @in @binary own[4], @binary sum, @in @long given[3], @in @binary d[3], @in @int facing[4], @int x, @int y, @int width, @int height";
     vec![
-        piece("nb_direction", "A unit's own direction into a cube map.", AT, vec![direction]).filling("d[3]").binary(),
+        piece("nb_direction", "A unit's own direction into a cube map.", OWN, vec![direction]).filling("d[3]").binary(),
         piece("nb_vector", "A direction of the dot unit.", "@in @long given[3]", vec![vector]).filling("d[3]").binary(),
         piece(
             "nb_facing",
@@ -173,21 +179,22 @@ fn coordinates(maker: &Maker) -> Vec<Piece> {
         piece(
             "nb_far_coordinates",
             "u and v of a quad's pixel in 1/65536 texel, and whether it lies behind the viewer.",
-            placed,
+            far_placed,
             far,
         )
         .by("way")
         .filling("far[3]")
         .wide(),
         piece(
-            "nb_layer",
-            "The layer of a volume, and whether it is beyond them.",
-            "@triangle, @uint unit, @in @binary b[4], @int layers",
-            layer,
-        )
-        .by("mode")
-        .filling("layer[2]"),
-        piece("nb_reference", "r/q: mantissa and exponent.", AT, vec![third]).filling("v[2]").wide(),
+            "nb_across_layers",
+            "The coordinate in 1/256 layer of a volume.",
+            "@in @binary own[4], @int layers",
+            vec![across],
+        ),
+        piece("nb_layer", "The layer at a coordinate, and whether it is beyond them.", "@int w, @int layers", layer)
+            .by("mode")
+            .filling("layer[2]"),
+        piece("nb_reference", "r/q: mantissa and exponent.", OWN, vec![third]).filling("v[2]").wide(),
     ]
 }
 
@@ -243,11 +250,11 @@ fn levels(maker: &Maker) -> Vec<Piece> {
         vec![PlannedUnit { border, ..plain() }.texel_offset(width, Number::ZERO - beyond, height + beyond)]
     });
     vec![
-        piece("nb_lod", "The lod of a quad.", "@long quad[3][2], @int behind", vec![lod]),
+        piece("nb_lod", "The lod of a quad.", "@in @long quad[6], @int behind", vec![lod]),
         piece(
             "nb_taps",
             "Four pairs of taps of a quad: offsets along u and v, and weight.",
-            "@long quad[3][2], @int behind, @int limit",
+            "@in @long quad[6], @int behind, @int limit",
             vec![taps],
         )
         .filling("taps[12]"),
@@ -319,7 +326,7 @@ fn texels(maker: &Maker) -> Vec<Piece> {
             traits,
         )
         .by("code")
-        .filling("of[4]"),
+        .filling("traits[4]"),
         piece("nb_inside", "The lanes of a texel: R, G, B, A, or halves.", "@uint word", inside)
             .by("code")
             .filling("lanes[4]"),

@@ -11,10 +11,8 @@ use ninebit::frame::Frames;
 use ninebit::limits::MEMORY_IMAGE;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::raster::stroke::Figure;
-use ninebit::state::{Level, Texels, TextureImage};
-use ninebit::texture::planned::PlannedUnit;
 use ninebit_files::read::{self, Kind};
-use ninebit_lower::{Attribute, Field, Language};
+use ninebit_lower::{Attribute, Field, Language, with_all_levels};
 
 use crate::drawn::Printed;
 use crate::setting::{bytes, compiler, run};
@@ -147,7 +145,7 @@ impl Printed<'_> {
             let mut sampled = draw.clone();
             if let Some(states) = states {
                 given.extend(&states[number]);
-                sampled.units.iter_mut().for_each(|unit| self.restore_levels(unit));
+                sampled = with_all_levels(plan, draw);
             }
             for memory in words.memories(&sampled) {
                 given.push(memory.len() as u32);
@@ -156,15 +154,6 @@ impl Printed<'_> {
             given.extend(drawn);
         }
         given
-    }
-
-    /// Gives a unit the levels that no pixel can reach.
-    fn restore_levels(&self, unit: &mut PlannedUnit) {
-        if let TextureImage::Texels(Texels { width, height, levels, border, .. }) =
-            self.plan.textures()[unit.state.texture].image
-        {
-            unit.levels = Level::chain(unit.format, width, height, levels, border).0;
-        }
     }
 
     /// Appends a triangle with its spans.

@@ -77,6 +77,8 @@ pub fn bytes(words: &[u32]) -> Vec<u8> {
 pub fn drawing(script: &str) -> Command {
     let mut command = Command::new(python());
     command.env("LIBGL_ALWAYS_SOFTWARE", "1").env("GALLIUM_DRIVER", "llvmpipe").env("WGPU_BACKEND_TYPE", "Vulkan");
+    // Programs that draw every draw are compiled once.
+    command.env("MESA_SHADER_CACHE_DIR", Path::new(env!("CARGO_TARGET_TMPDIR")).join("shaders"));
     command.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/tools").join(script));
     command
 }

@@ -10,7 +10,7 @@ use ninebit::engine::walk::triangles;
 use ninebit::engine::{TextureWords, cleared};
 use ninebit::frame::Frames;
 use ninebit::raster::stroke::Figure;
-use ninebit_lower::{Field, Language, Part, Shaders};
+use ninebit_lower::{Field, Language, Setup, Shaders, with_all_levels};
 
 use crate::drawn::Printed;
 use crate::setting::{GLSL_COMPILER, bytes, drawing, run};
@@ -92,7 +92,7 @@ impl Printed<'_> {
     /// What the driver says.
     pub fn shaded(&self, folder: &Path) -> Result<Frames, String> {
         std::fs::write(folder.join("whole.wgsl"), self.wgsl_text()).unwrap();
-        self.drawn(folder, "whole.py")
+        self.drawn(folder, "whole.py", None)
     }
 
     /// Draws by OpenGL, which rasterises.
@@ -101,15 +101,16 @@ impl Printed<'_> {
     /// What the driver says.
     pub fn paired(&self, folder: &Path) -> Result<Frames, String> {
         for (n, draw) in self.named().iter().enumerate() {
-            let Shaders { vertex, fragment } = Shaders::new(draw);
-            std::fs::write(folder.join(format!("draw{n}.vert")), vertex).unwrap();
-            std::fs::write(folder.join(format!("draw{n}.frag")), fragment).unwrap();
+            write_shaders(folder, n, Shaders::new(draw));
         }
-        self.drawn(folder, "pair.py")
+        self.drawn(folder, "pair.py", None)
     }
 
-    /// Draws by a script.
-    fn drawn(&self, folder: &Path, script: &str) -> Result<Frames, String> {
+    /// Draws by a script, with the state of each draw if one text draws all.
+    ///
+    /// # Errors
+    /// What the driver says.
+    pub fn drawn(&self, folder: &Path, script: &str, states: Option<&[Vec<u32>]>) -> Result<Frames, String> {
         let plan = self.plan;
         let mut frames = cleared(plan);
         let mut given = self.targets(&frames);
@@ -117,7 +118,9 @@ impl Printed<'_> {
             let before = self.before(number);
             let words = TextureWords::new(plan, &plan.draws()[number..=number], &before.surfaces);
             let window = draw.windows.first().map_or([0; 4], |w| [w.x, w.y, w.x + w.width, w.y + w.height]);
-            let (setup, mut all, mut vertices) = (&self.draws[number].1, Vec::new(), Vec::new());
+            let every = states.map(|_| (Setup::of_all(plan, draw), with_all_levels(plan, draw)));
+            let (setup, sampled) = every.as_ref().map_or((&self.draws[number].1, draw), |(setup, draw)| (setup, draw));
+            let (mut all, mut vertices) = (Vec::new(), Vec::new());
             for ((rows, _), n) in triangles(draw, (0, plan.targets()[draw.target].height.into())) {
                 if let Some(context) = TriangleContext::new(plan, draw, n, rows) {
                     let number = vertices.len() as u32 / 9;
@@ -126,13 +129,14 @@ impl Printed<'_> {
                 }
             }
             let mut memory = vec![0; 4];
-            for (unit, words) in words.memories(draw).iter().enumerate() {
+            for (unit, words) in words.memories(sampled).iter().enumerate() {
                 memory[unit] = memory.len() as u32;
                 memory.extend(words.iter());
             }
             given.push(draw.target as u32);
             given.extend(window);
-            for part in [all, memory, vertices] {
+            let state = states.map(|states| states[number].clone()).unwrap_or_default();
+            for part in [all, memory, vertices, state] {
                 given.push(part.len() as u32);
                 given.extend(part);
             }
@@ -144,21 +148,16 @@ impl Printed<'_> {
     }
 }
 
+/// Writes the shaders of a draw.
+pub fn write_shaders(folder: &Path, draw: usize, Shaders { vertex, fragment }: Shaders) {
+    std::fs::write(folder.join(format!("draw{draw}.vert")), vertex).unwrap();
+    std::fs::write(folder.join(format!("draw{draw}.frag")), fragment).unwrap();
+}
+
 /// Returns the constants of a triangle in the layout of the printed structure.
 fn triangle(constants: &HashMap<Field, i64>) -> Vec<u32> {
-    let mut fields: Vec<Field> = (0..3).map(Field::EdgeX).chain((0..3).map(Field::EdgeY)).collect();
-    fields.extend((0..3).map(Field::Edge).chain((0..3).map(Field::Ratio)));
-    fields.extend((0..16).flat_map(|n| Part::ALL.map(|part| Field::Coordinate(n / 4, n % 4, part))));
-    fields.extend(Part::ALL.map(Field::Fog).into_iter().chain((0..3).map(Field::Depth)));
-    fields.extend((0..9).map(|n| Field::DepthDifference(n / 3, n % 3)).chain((0..3).map(Field::DepthRatio)));
-    fields.push(Field::Offset);
-    fields.extend((0..24).map(|n| Field::Color(n / 12, n / 3 % 4, n % 3)));
-    fields.extend((0..3).map(Field::Owns).chain([Field::FogByte, Field::OffsetExponent]));
-    fields.extend([Field::Sprite(0), Field::Sprite(1), Field::SpriteSize]);
-    let mut out: Vec<u32> = Vec::new();
-    for field in fields {
-        out.extend(field.words(constants.get(&field).copied().unwrap_or(0)));
-    }
+    let words = |field: Field| field.words(constants.get(&field).copied().unwrap_or(0));
+    let out: Vec<u32> = Field::all().into_iter().flat_map(words).collect();
     assert_eq!(out.len(), 184);
     out
 }

@@ -13,6 +13,7 @@ use ninebit_methods::export::draw_words;
 use crate::compiled::MAIN;
 use crate::drawn::Printed;
 use crate::setting::{bytes, compiler, run};
+use crate::shaded::write_shaders;
 
 /// Largest number of lines that the text may have.
 const LINES: usize = 3500;
@@ -67,18 +68,41 @@ fn program(chip: Profile, policies: Policies, Programs(programs): &mut Programs)
 }
 
 impl Printed<'_> {
+    /// Returns the methods and words of each draw.
+    ///
+    /// # Errors
+    /// Why a draw has no words.
+    fn states(&self) -> Result<Vec<Vec<(u32, u32)>>, String> {
+        let draws = self.plan.draws().iter().enumerate();
+        draws.map(|(n, draw)| draw_words(self.scene, draw, n).map_err(|error| error.message)).collect()
+    }
+
+    /// Draws by OpenGL, with the same shaders for every draw.
+    ///
+    /// # Errors
+    /// Why a draw has no words, if the first value is true; otherwise what the driver says.
+    pub fn paired_generic(&self, folder: &Path) -> Result<Frames, (bool, String)> {
+        let generic = Generic { chip: self.plan.profile, policies: self.plan.policies };
+        let states = self.states().map_err(|error| (true, error))?.into_iter().map(|words| {
+            let words: HashMap<u32, u32> = words.into_iter().collect();
+            generic.state(|method| words.get(&method).copied().unwrap_or(0))
+        });
+        (0..states.len()).for_each(|n| write_shaders(folder, n, generic.whole_shaders()));
+        self.drawn(folder, "pair.py", Some(&states.collect::<Vec<_>>())).map_err(|error| (false, error))
+    }
+
     /// Draws by the generic text. The plan must leave out nothing.
     ///
     /// # Errors
     /// Why a draw has no words, if the first value is true; otherwise what the compiler or the program says.
     pub fn generic(&self, folder: &Path, programs: &mut Programs) -> Result<Frames, (bool, String)> {
-        let mut states = Vec::new();
-        for (number, planned) in self.plan.draws().iter().enumerate() {
-            let words = draw_words(self.scene, planned, number).map_err(|error| (true, error.message))?;
-            let mut state = vec![words.len() as u32];
-            state.extend(words.iter().flat_map(|(method, word)| [*method, *word]));
-            states.push(state);
-        }
+        let counted = |words: Vec<(u32, u32)>| -> Vec<u32> {
+            [words.len() as u32]
+                .into_iter()
+                .chain(words.into_iter().flat_map(|(method, word)| [method, word]))
+                .collect()
+        };
+        let states: Vec<_> = self.states().map_err(|error| (true, error))?.into_iter().map(counted).collect();
         let program = program(self.plan.profile, self.plan.policies, programs).map_err(|error| (false, error))?;
         std::fs::write(folder.join("given.bin"), bytes(&self.given(Some(&states)))).unwrap();
         run(Command::new(program).args(["given.bin", "drawn.bin"]), folder).map_err(|error| (false, error))?;

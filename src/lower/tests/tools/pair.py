@@ -24,7 +24,7 @@ def rectangles(vertices, limit):
 
 
 targets, draws = take(2)
-surfaces = []
+surfaces, programs = [], {}
 for _ in range(targets):
     width, pixels = (int(n) for n in take(2))
     size = (width, pixels // width)
@@ -33,7 +33,7 @@ for _ in range(targets):
     surfaces.append((size, context.framebuffer(of), of, copies))
 for draw in range(draws):
     target, *window = (int(n) for n in take(5))
-    triangles, memory, vertices = (take(int(take(1)[0])) for _ in range(3))
+    triangles, memory, vertices, state = [take(int(take(1)[0])) for _ in range(4)]
     if not len(triangles):
         continue
     size, frame, of, copies = surfaces[target]
@@ -46,9 +46,10 @@ for draw in range(draws):
         vertices = rectangles(vertices, limit)
     each = vertices.shape[1]
     texts = [define(open(f"draw{draw}.{stage}").read(), *options) for stage in ("vert", "frag")]
-    program = context.program(vertex_shader=texts[0], fragment_shader=texts[1])
+    program = programs.get(texts[1]) or context.program(vertex_shader=texts[0], fragment_shader=texts[1])
+    programs[texts[1]] = program
     program["ninebit_size"] = size
-    for binding, words in enumerate((triangles, memory)):
+    for binding, words in enumerate((triangles, memory, *([state] if len(state) else []))):
         context.buffer(words.tobytes()).bind_to_storage_buffer(binding)
     array = context.vertex_array(program, [(context.buffer(vertices.tobytes()), "3i", "ninebit_vertex")])
     left, top, right, bottom = window

@@ -21,7 +21,7 @@ layout = device.create_bind_group_layout(entries=entries)
 module = device.create_shader_module(code=open("whole.wgsl").read())
 for draw in range(draws):
     target, *window = (int(n) for n in take(5))
-    triangles, memory, _ = (take(int(take(1)[0])) for _ in range(3))
+    triangles, memory, *_ = [take(int(take(1)[0])) for _ in range(4)]
     if not len(triangles):
         continue
     width, pixels, buffers = surfaces[target]
