@@ -8,7 +8,6 @@ use ninebit::shown;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 use crate::failure::Failure;
-use crate::renderer::Pipelines;
 
 /// Columns and rows of a tile, each pixel of which is an invocation of a workgroup.
 pub(crate) const TILE: u32 = 16;
@@ -69,6 +68,9 @@ fn chosen(all: Vec<wgpu::Adapter>, wanted: Option<&str>) -> Result<wgpu::Adapter
 
 /// What the driver has said so far that nobody has asked for.
 type Complaint = Arc<Mutex<Option<String>>>;
+
+/// The pipeline of a text, and that for tiles which a triangle covers.
+pub(crate) type Pipelines = [wgpu::ComputePipeline; 2];
 
 /// The device of an adapter.
 #[derive(Debug)]

@@ -12,7 +12,7 @@ use ninebit_lower::{Field, Function, Generic, Options, Setup, with_all_levels};
 use ninebit_methods::export::draw_words;
 use wgpu::BufferUsages;
 
-use crate::adapter::{DISPATCH_ROW, Gpu};
+use crate::adapter::{DISPATCH_ROW, Gpu, Pipelines};
 use crate::bins::{Bins, Tiles, sorted};
 use crate::failure::Failure;
 use crate::text::{WORK, Way, fields, generic_shader, length, shader};
@@ -88,9 +88,6 @@ struct Dispatch {
     /// Whether the triangle covers all their pixels.
     is_full: bool,
 }
-
-/// The pipeline of a draw, and that for tiles which a triangle covers.
-pub(crate) type Pipelines = [wgpu::ComputePipeline; 2];
 
 /// The work of a draw.
 #[derive(Debug)]

@@ -16,7 +16,7 @@ const WORDS: [(&str, [&str; 3]); 35] = [
     ("@word", ["*word", "word", "*word"]),
     ("@depth", ["*depth", "depth", "*depth"]),
     ("@shared\n", ["\n", "nb_work nb_shared;\n\n", "var<private> nb_shared: nb_work;\n\n"]),
-    ("@memory", ["struct nb_work memory, *const work = &memory;", "", ""]),
+    ("@memory", ["struct nb_work memory = {0}, *const work = &memory;", "", ""]),
     ("@work", ["struct nb_work *work", "", ""]),
     ("@w.", ["work->", "nb_shared.", "nb_shared."]),
     ("@given", ["struct nb_inputs", "NinebitInputs", ""]),

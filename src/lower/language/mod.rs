@@ -27,6 +27,7 @@ use crate::kind::is_wide;
 use crate::pixel::{Function, Result};
 pub use pair::Shaders;
 pub(crate) use pair::TRIANGLES;
+pub(crate) use shader::ABOUT;
 pub use whole::Draw;
 pub(crate) use wide::Wide;
 use wide::wide_operation;

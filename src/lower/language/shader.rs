@@ -4,7 +4,8 @@ use super::whole::WholeSyntax;
 use super::*;
 use crate::input::Local;
 
-const ABOUT: &str = "\
+/// What hosts of shaders of whole pixels have to know.
+pub(crate) const ABOUT: &str = "\
 // Numbers that need more than 32 bits are pairs of words, the lower one first. The host provides ninebit_texel(unit, at): word `at` of the memory of
 // a unit, with one word for each texel: palettes looked up, and blocks decoded to A8R8G8B8. It makes the constants of triangles, as the C text does.
 ";

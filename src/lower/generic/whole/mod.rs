@@ -20,7 +20,7 @@ use super::{Generic, Sources};
 use crate::code::Line;
 use crate::draw::QUAD;
 use crate::input::{Input, Local};
-use crate::language::{Language, STRUCTURES, TRIANGLES, shared, statements};
+use crate::language::{ABOUT, Language, STRUCTURES, TRIANGLES, shared, statements};
 use crate::number::Number;
 use crate::order::Block;
 use crate::setup::{Setup, SetupState};
@@ -198,15 +198,21 @@ pub(super) fn c99(generic: &Generic) -> Sources {
 pub(super) fn shader(generic: &Generic, language: Language) -> String {
     let printer = Printer::whole(generic, language);
     let pieces = pieces(generic);
-    let calls = shared(language, || lines(&pieces)) + "\n";
+    let calls = format!("{ABOUT}{}\n", shared(language, || lines(&pieces)));
     let text =
         printer.body(Mapped::Computed) + "\n" + &pieces_text(&printer, &pieces) + &numbered(include_str!("pixel.text"));
     let before = match language {
-        Language::Wgsl => calls + "fn nb_long(word: u32) -> vec2<u32> { return vec2<u32>(word, 0u); }\n\n",
+        Language::Wgsl => calls + VARIABLES,
         _ => calls + TRIANGLES + BUFFERS,
     };
     printer.shader("Whole pixels", "GLSL 4.30 and GLSL ES 3.10", &before) + &translated(&global(&text), language)
 }
+
+const VARIABLES: &str =
+    "// Variables of the host: ninebit_triangles, an array of NinebitTriangle, and ninebit_state, a NinebitState.
+fn nb_long(word: u32) -> vec2<u32> { return vec2<u32>(word, 0u); }
+
+";
 
 const BUFFERS: &str = "layout(std430, binding = 2) readonly buffer NinebitDraw { NinebitState ninebit_state; };
 uvec2 nb_long(uint word) { return uvec2(word, 0u); }
