@@ -80,7 +80,7 @@ fn committed() -> Result<(), Failed> {
 }
 
 fn committed_by_one_text() -> Result<(), Failed> {
-    hold_committed(Text::OfEveryDraw, 10)
+    hold_committed(Text::OfEveryDraw, 20)
 }
 
 /// Draws every nth scene of the repository.
@@ -106,7 +106,7 @@ fn random() -> Result<(), Failed> {
 }
 
 fn random_by_one_text() -> Result<(), Failed> {
-    hold_random(Text::OfEveryDraw, 20)
+    hold_random(Text::OfEveryDraw, 10)
 }
 
 /// Draws random scenes.
