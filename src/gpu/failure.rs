@@ -48,12 +48,6 @@ impl Failure {
         Failure::Message { code: Some("NB1702"), exit: 5, message, help }
     }
 
-    /// Returns the failure for state that no words set.
-    pub(crate) fn unwritten(message: String) -> Failure {
-        let help = "draw it without --generic".to_string();
-        Failure::Message { code: None, exit: 3, message, help }
-    }
-
     /// Returns the failure for what the driver says.
     pub(crate) fn driver(message: String) -> Failure {
         let help = "update the driver, or choose another adapter; report a refused shader".to_string();

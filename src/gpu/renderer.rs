@@ -253,7 +253,8 @@ impl Builder<'_> {
         if groups.is_empty() {
             return Ok(None);
         }
-        let words = draw_words(self.scene, draw, number).map_err(|error| Failure::unwritten(error.to_string()))?;
+        let words = draw_words(self.scene, draw, number)
+            .map_err(|error| Failure::usage(error.to_string(), "draw it without `--generic`"))?;
         let words: HashMap<u32, u32> = words.into_iter().collect();
         let state = generic.state(|method| words.get(&method).copied().unwrap_or(0));
         let state = self.gpu.buffer(&format!("the state of draw {number}"), &state, BufferUsages::STORAGE)?;
