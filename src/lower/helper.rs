@@ -162,7 +162,7 @@ impl Helper {
             }
             Helper::Reciprocal(sign) => {
                 let name = if sign == Sign::Any { "signed_reciprocal" } else { "reciprocal" };
-                (name, "floor(2^s / a - 3/16) 2^-s, with the s that leaves 29 bits", "WGT-1")
+                (name, "1 / a by two steps of Newton's method, cut to 29 bits", "WGT-1")
             }
             Helper::Rest(Sign::Positive) => ("rest", "1 - a - b, rounded up to 24 bits", "WGT-1"),
             Helper::Rest(Sign::Any) => ("signed_rest", "1 - a - b, rounded up to 24 bits", "WGT-1"),

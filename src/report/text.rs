@@ -208,7 +208,7 @@ pub(super) fn expression(step: &Step) -> String {
         "cut_24" => format!("cut({})", name(0)),
         "cut_24_product" => format!("cut({} {})", name(0), name(1)),
         "edge_sum" => format!("{} + {} + {}, to 29 bits of the largest", name(0), name(1), name(2)),
-        "reciprocal" => format!("floor(2^s / {} - 3/16) 2^-s, 29 bits", name(0)),
+        "reciprocal" => format!("1 / {} by Newton's method, 29 bits", name(0)),
         "rest_24" => format!("1 - {} - {}, up to 24 bits", name(0), name(1)),
         "float_difference" => format!("{} - {}", value(0), value(1)),
         "number" => name(0).to_owned(),

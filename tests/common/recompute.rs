@@ -617,13 +617,16 @@ fn depth_sum(edges: [f64; 3], e: [f64; 3]) -> f64 {
     edges.into_iter().map(|e| cut(e, two(most - 28))).sum()
 }
 
-/// DEP-1: returns R, which has 29 bits and is 3/16 of the last bit too low. The reciprocal of a power of two is exact.
+/// DEP-1: returns R by two steps of Newton's method. The reciprocal of a power of two is exact.
 #[allow(clippy::float_arithmetic, reason = "an independent way to the same numbers")]
 fn depth_reciprocal(sum: f64) -> f64 {
     let top = power(sum);
     let whole = (sum / two(top - 30)) as i128;
-    let low = ((1_i128 << 63) - 3 * whole).div_euclid(16 * whole) as f64 * two(-29 - top);
-    if whole == 1 << 30 { 1.0 / sum } else { low }
+    let middle = 2 * (whole >> 23) + 1;
+    let first = (65536 + middle) / (2 * middle);
+    let second = (((1 << 22) - first * (whole >> 16)) * first + 4096) >> 13;
+    let third = (second * (((1 << 46) - second * whole) >> 15)) >> 16;
+    if whole == 1 << 30 { 1.0 / sum } else { third as f64 * two(-29 - top) }
 }
 
 /// Recomputes the depth of DEP-1, DEP-4 and DEP-5 in doubles, which represent all of its numbers exactly. Returns `None` for `depth_inside`

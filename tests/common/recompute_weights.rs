@@ -112,9 +112,15 @@ pub fn number(operation: &str, inputs: &Inputs) -> Number {
             if m == 1 {
                 Exact { m: sign, e: -power }
             } else {
-                // The largest k with k <= 2^s / m - 3/16, that is 16 k m + 3 m <= 2^(s + 4).
-                let s = 29 + m.ilog2() as i32;
-                Exact { m: sign * (((1 << (s + 4)) - 3 * m) / (16 * m)), e: -s - power }
+                let s = m.ilog2() as i32;
+                let n = Exact { m, e: -s };
+                let two_less = |n: Exact| Exact { m: 2, e: 0 }.minus(n);
+                let c = 2 * ((m << 7) >> s) + 1;
+                let first = Exact { m: (65536 + c) / (2 * c), e: -7 };
+                let second = two_less(first.times(n.cut_at(-14))).times(first);
+                let second = second.plus(Exact { m: 1, e: -16 }).cut_at(-15);
+                let third = two_less(second.times(n)).cut_at(-30).times(second).cut_at(-29);
+                Exact { m: sign * third.m, e: third.e - s - power }
             }
         }
         "rest_24" => {

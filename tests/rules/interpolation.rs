@@ -42,7 +42,7 @@ fn examples_of_interpolation() {
     wgt1.gives("E", triangle.edges(10, 1).map(i128::from), edges);
     let numbers = weights::edge_numbers(edges, None);
     let r = weights::reciprocal(weights::sum(numbers, 29));
-    wgt1.gives("S", over(weights::sum(numbers, 29), 0), 2_359_296.0).gives("R", over(r, -50), 477_218_588.0);
+    wgt1.gives("S", over(weights::sum(numbers, 29), 0), 2_359_296.0).gives("R", over(r, -50), 477_218_587.0);
     wgt1.gives("d", weights::dominant(weights::shares(numbers, r)), 0);
     let b = weights::weights(edges, None).unwrap();
     wgt1.gives("b_0", over(b[0], -24), 14_680_065.0).gives("b_1", over(b[1], -27), 14_680_063.0);

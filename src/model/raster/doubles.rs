@@ -56,18 +56,22 @@ impl Number for f64 {
         (if sum == 0.0 { 1.0 } else { sum }) * unit
     }
 
-    /// The quotient is correct to half of its 53rd bit. That can reach the floor at the 29th only from below, and whether it did is decided by
-    /// the exact product: with m the 31 bits of the sum and k the floor, k is too large if (16 k + 3) m > 2^63.
+    /// No product has more than 48 bits.
     #[inline(always)]
     fn reciprocal(self) -> f64 {
-        const KEPT: u64 = !0 << 24;
-        let quotient = (1.0 / self).to_bits();
-        let floor = quotient.wrapping_sub(3 << 20) & KEPT;
-        let k = (floor >> 24 & 0x0fff_ffff) | 1 << 28;
-        let m = (self.to_bits() >> 22 & 0x3fff_ffff) | 1 << 30;
-        let above = ((k * m) << 4).wrapping_add(3 * m) >> 63;
-        let is_power = quotient << 12 == 0;
-        f64::from_bits(if is_power { quotient } else { floor.wrapping_sub(above << 24) })
+        const ONE: u64 = BIAS << 52;
+        /// Half a unit of the 15th fraction bit.
+        const HALF: f64 = 1.0 / 65536.0;
+        let bits = self.to_bits();
+        let fraction = bits & !(!0 << 52);
+        let m = f64::from_bits(fraction | ONE);
+        let middle = f64::from_bits(fraction & !0 << 45 | 1 << 44 | ONE);
+        let first = (128.0 / middle + 0.5).trunc() / 128.0;
+        let near = f64::from_bits(fraction & !0 << 38 | ONE);
+        let second = cut_at::<15>((2.0 - first * near) * first + HALF);
+        let third = cut_at::<29>(cut_at::<30>(2.0 - second * m) * second);
+        let scale = (BIAS << 53).wrapping_sub(bits & EXPONENT) | (bits & 1 << 63);
+        f64::from_bits(scale) * if fraction == 0 { 1.0 } else { third }
     }
 
     #[inline(always)]
@@ -116,14 +120,12 @@ pub(crate) fn lost_by_sum(a: f64, b: f64) -> f64 {
     (a - (sum - part)) + (b - part)
 }
 
-/// Returns the [reciprocal](Number::reciprocal) of a number above 0, and whether it may be a last bit too large, which is one in 2^24.
-#[allow(clippy::float_arithmetic, reason = "a quotient whose rounding is looked at")]
+/// Returns a number that is not negative, less what lies below 2^-`BITS`.
+#[allow(clippy::float_arithmetic, reason = "powers of two")]
 #[inline(always)]
-pub(crate) fn likely_reciprocal(sum: f64) -> (f64, bool) {
-    let quotient = (1.0 / sum).to_bits();
-    let lowered = quotient.wrapping_sub(3 << 20);
-    let is_power = quotient << 12 == 0;
-    (f64::from_bits(if is_power { quotient } else { lowered & !0 << 24 }), lowered << 40 == 0)
+fn cut_at<const BITS: u64>(n: f64) -> f64 {
+    let [up, down] = [BIAS + BITS, BIAS - BITS].map(|power| f64::from_bits(power << 52));
+    (n * up).trunc() * down
 }
 
 /// Returns the sum of terms, each toward zero in steps of the `BITS`th bit of the largest, and such a step.

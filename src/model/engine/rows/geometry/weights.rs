@@ -11,7 +11,6 @@
 
 use super::shape::Shape;
 use crate::engine::rows::lanes::PerLane;
-use crate::raster::doubles::likely_reciprocal;
 use crate::raster::weights::{Number, completed, edge_numbers, shares};
 use std::ops::Range;
 
@@ -116,16 +115,8 @@ impl Passes {
         for n in 0..lanes {
             sums[n] = f64::sum_of_edges([e0[n], e1[n], e2[n]]);
         }
-        let mut is_open = false;
         for n in 0..lanes {
-            let open;
-            (reciprocals[n], open) = likely_reciprocal(sums[n]);
-            is_open |= open;
-        }
-        if is_open {
-            for n in 0..lanes {
-                reciprocals[n] = sums[n].reciprocal();
-            }
+            reciprocals[n] = sums[n].reciprocal();
         }
     }
 
