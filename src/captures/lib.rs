@@ -44,7 +44,7 @@ mod texgen;
 mod transfers;
 pub mod verdict;
 
-pub use table::Open;
+pub use table::KnownDifference;
 
 use draws::*;
 use images::checker;
@@ -110,7 +110,7 @@ pub struct Frame {
     pub text: Vec<Rectangle>,
     digest: &'static str,
     /// The known difference from the capture; `None` if the frame is exact.
-    pub open: Option<Open>,
+    pub open: Option<KnownDifference>,
 }
 
 impl fmt::Debug for Frame {

@@ -22,7 +22,7 @@ pub(super) type Lamp = (Light, [[f32; 3]; 3]);
 
 /// A vertex as the programs give it.
 #[derive(Clone, Copy)]
-pub(super) struct Given {
+pub(super) struct LitVertex {
     pub(super) position: [f32; 4],
     pub(super) normal: [f32; 3],
     pub(super) diffuse: [f32; 4],
@@ -31,7 +31,7 @@ pub(super) struct Given {
 
 /// The side of a surface that is seen.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Seen {
+pub(super) enum SurfaceSide {
     Front,
     Back,
 }
@@ -108,14 +108,14 @@ pub(super) fn with_back(shading: &Shading, back: Side) -> Shading {
 }
 
 /// Returns a vertex of the world, whose matrices leave its normal as it is.
-pub(super) fn lit(given: &Given, shading: &Shading, seen: Seen) -> Vertex {
+pub(super) fn lit(given: &LitVertex, shading: &Shading, seen: SurfaceSide) -> Vertex {
     let position = unit::transform(&space::rows(&space::eye()), words(given.position));
     let surface = Surface::new(position, words(given.normal), [0.0; 3]);
     let (front, back) = shading.colors(&surface, [given.diffuse, given.specular]);
     let colors = match seen {
-        Seen::Front => front,
+        SurfaceSide::Front => front,
         // Backs that nothing lights are black.
-        Seen::Back => back.unwrap_or([[0.0, 0.0, 0.0, 1.0]; 2]),
+        SurfaceSide::Back => back.unwrap_or([[0.0, 0.0, 0.0, 1.0]; 2]),
     };
     let [diffuse, specular] = colors.map(|color| VertexColor::Floats(color.map(limited)));
     Vertex { position: space::flat(given.position), diffuse, specular, ..Vertex::default() }
@@ -124,9 +124,9 @@ pub(super) fn lit(given: &Given, shading: &Shading, seen: Seen) -> Vertex {
 /// Draws one side of what stands in the world. On the screen all of it runs clockwise.
 pub(super) fn drawn(
     topology: Topology,
-    given: impl Iterator<Item = Given>,
+    given: impl Iterator<Item = LitVertex>,
     shading: &Shading,
-    seen: Seen,
+    seen: SurfaceSide,
     combiners: &Combiners,
 ) -> Draw {
     let vertices = given.map(|given| lit(&given, shading, seen)).collect();
@@ -139,10 +139,10 @@ pub(super) fn drawn(
 }
 
 /// Returns the vertices of a mesh of two colours.
-pub(super) fn of_mesh(places: &[Place], [diffuse, specular]: [[f32; 4]; 2]) -> impl Iterator<Item = Given> {
+pub(super) fn of_mesh(places: &[Place], [diffuse, specular]: [[f32; 4]; 2]) -> impl Iterator<Item = LitVertex> {
     places.iter().map(move |(position, normal)| {
         let [x, y, z] = *position;
-        Given { position: [x, y, z, 1.0], normal: *normal, diffuse, specular }
+        LitVertex { position: [x, y, z, 1.0], normal: *normal, diffuse, specular }
     })
 }
 

@@ -33,7 +33,7 @@ pub(super) fn controls(frames: &mut Frames) {
                 for places in meshes::solids() {
                     let given = [[0.0, 0.0, 0.0, 0.75], [0.0, 0.4, 0.0, 0.25]];
                     let given = of_mesh(&places, given);
-                    canvas.draw(drawn(Topology::Triangles, given, &shading, Seen::Front, &summed(true, true)));
+                    canvas.draw(drawn(Topology::Triangles, given, &shading, SurfaceSide::Front, &summed(true, true)));
                 }
             });
         }
@@ -58,13 +58,19 @@ pub(super) fn normals(frames: &mut Frames) {
     let shading = |word| shading(&[lamp], material([0.0; 3], 1.0, POWER_10), word);
     let triangle = |left: f32, right: f32, z: f32, normals: [[f32; 3]; 3], word: u32| {
         let corners = [[left, 1.75], [right, 1.75], [left + (right - left) * 0.5, -1.75]];
-        let given = corners.into_iter().zip(normals).map(|([x, y], normal)| Given {
+        let given = corners.into_iter().zip(normals).map(|([x, y], normal)| LitVertex {
             position: [x, y, z, 1.0],
             normal,
             diffuse: [1.0; 4],
             specular: [0.0; 4],
         });
-        drawn(Topology::Triangles, given, &shading(word), Seen::Front, &Combiners::showing(FinalRegister::PrimaryColor))
+        drawn(
+            Topology::Triangles,
+            given,
+            &shading(word),
+            SurfaceSide::Front,
+            &Combiners::showing(FinalRegister::PrimaryColor),
+        )
     };
     for (name, normal) in NORMALS {
         let mut canvas = Canvas::new(0xff30_3030);
@@ -101,16 +107,16 @@ pub(super) fn ranges(frames: &mut Frames) {
             let places: Vec<meshes::Place> =
                 meshes::grid().into_iter().map(|(position, normal)| (turn(position), turn(normal))).collect();
             let both = summed(true, true);
-            canvas.draw(drawn(Topology::Triangles, of_mesh(&places, NO_COLORS), &shading, Seen::Front, &both));
+            canvas.draw(drawn(Topology::Triangles, of_mesh(&places, NO_COLORS), &shading, SurfaceSide::Front, &both));
             for (left, z) in [(24.0, -2.0), (640.0 - (24.0 + 128.0), 2.0)] {
                 let world = unprojected_corners(sized([left, 64.0], [128.0, 256.0]), z, &inverse());
-                let given = world.into_iter().zip(TILTED).map(|(position, normal)| Given {
+                let given = world.into_iter().zip(TILTED).map(|(position, normal)| LitVertex {
                     position,
                     normal,
                     diffuse: [1.0, 0.5, 1.0, 0.25],
                     specular: [0.0, 0.5, 1.0, 0.25],
                 });
-                canvas.draw(drawn(Topology::Quads, given, &shading, Seen::Front, &both));
+                canvas.draw(drawn(Topology::Quads, given, &shading, SurfaceSide::Front, &both));
             }
         });
     }
@@ -170,7 +176,7 @@ pub(super) fn spotlights(frames: &mut Frames) {
             for places in [meshes::grid(), meshes::cylinder()] {
                 let given = [[1.0, 0.0, 1.0, 1.0], [0.0, 0.4, 0.0, 0.25]];
                 let given = of_mesh(&places, given);
-                canvas.draw(drawn(Topology::Triangles, given, &shading, Seen::Front, &summed(true, true)));
+                canvas.draw(drawn(Topology::Triangles, given, &shading, SurfaceSide::Front, &summed(true, true)));
             }
         });
     }
@@ -193,7 +199,7 @@ pub(super) fn accumulation(frames: &mut Frames) {
             background(canvas, [0xff20_2020, 0xff90_9090], 24);
             let places = meshes::grid();
             let given = of_mesh(&places, NO_COLORS);
-            canvas.draw(drawn(Topology::Triangles, given, &shading, Seen::Front, &summed(true, true)));
+            canvas.draw(drawn(Topology::Triangles, given, &shading, SurfaceSide::Front, &summed(true, true)));
         });
     };
     for (name, light) in lights {

@@ -19,13 +19,13 @@ const LEGEND: [[f32; 3]; 7] =
 
 /// Draws a quad of the world for a rectangle of the screen, at depth 0 of the world.
 fn quad(edges: [f32; 4], diffuse: [f32; 4], shading: &Shading, combiners: &Combiners) -> Draw {
-    let given = unprojected_corners(edges, 0.0, &inverse()).into_iter().map(|position| Given {
+    let given = unprojected_corners(edges, 0.0, &inverse()).into_iter().map(|position| LitVertex {
         position,
         normal: [0.0, 0.0, -1.0],
         diffuse,
         specular: VERTEX_SPECULAR,
     });
-    drawn(Topology::Quads, given, shading, Seen::Front, combiners)
+    drawn(Topology::Quads, given, shading, SurfaceSide::Front, combiners)
 }
 
 /// Draws three rows of one material: primary colour, secondary colour, both. The right halves are opaque.
@@ -113,11 +113,11 @@ pub(super) fn sources(frames: &mut Frames) {
 }
 
 /// Returns the two triangles of a rectangle: the normals of the first point ahead, those of the second back.
-fn halves([left, top, right, bottom]: [f32; 4], z: f32, colors: [[[f32; 4]; 2]; 4], first: f32) -> Vec<Given> {
+fn halves([left, top, right, bottom]: [f32; 4], z: f32, colors: [[[f32; 4]; 2]; 4], first: f32) -> Vec<LitVertex> {
     let given = |n: usize, normal: f32| {
         let [x, y] = corners([left, top, right, bottom])[n];
         let [diffuse, specular] = colors[n];
-        Given { position: [x, y, z, 1.0], normal: [0.0, 0.0, normal], diffuse, specular }
+        LitVertex { position: [x, y, z, 1.0], normal: [0.0, 0.0, normal], diffuse, specular }
     };
     [(0, first), (1, first), (2, first), (0, 1.0), (2, 1.0), (3, 1.0)].map(|(n, normal)| given(n, normal)).to_vec()
 }
@@ -143,7 +143,7 @@ pub(super) fn colors(frames: &mut Frames) {
         let shading = shading(&[lamp], material(ambient, 1.0, POWER_125), LOCAL_EYE | SEPARATE);
         let given = halves([-2.75, 1.75, 2.75, -1.75], 0.0, [[[1.0; 4]; 2]; 4], -1.0);
         let primary = Combiners::showing(FinalRegister::PrimaryColor);
-        let drawn = drawn(Topology::Triangles, given.into_iter(), &shading, Seen::Front, &primary);
+        let drawn = drawn(Topology::Triangles, given.into_iter(), &shading, SurfaceSide::Front, &primary);
         frames.push(name, one(0xff30_3030, None, drawn));
     }
 }
@@ -182,7 +182,7 @@ pub(super) fn alphas(frames: &mut Frames) {
                 let vertices = halves(edges, z, colors, first).into_iter().map(|given| {
                     let [x, y, ..] = given.position;
                     // Both matrices are the identity; the offset leads to the middle of the screen.
-                    Vertex { position: [x + 320.0, y + 240.0, 0.0, 1.0], ..lit(&given, &shading, Seen::Front) }
+                    Vertex { position: [x + 320.0, y + 240.0, 0.0, 1.0], ..lit(&given, &shading, SurfaceSide::Front) }
                 });
                 canvas.draw(draw(Topology::Triangles, vertices.collect()));
             }
@@ -200,15 +200,15 @@ pub(super) fn two_sides(frames: &mut Frames) {
         ..material([0.0; 3], 0.5, [0.0; 6])
     };
     let both = with_back(&front, back);
-    let quads: [([[f32; 2]; 4], f32, &Shading, Seen); 4] = [
-        ([[-1.5, 0.1], [-1.25, 1.5], [-0.35, 1.5], [-0.25, 0.1]], 1.0, &both, Seen::Front),
-        ([[0.25, 0.1], [1.25, 0.1], [1.35, 1.5], [0.1, 1.5]], -1.0, &both, Seen::Back),
-        ([[-1.5, -1.5], [-1.25, -0.1], [-0.35, -0.1], [-0.25, -1.5]], 1.0, &front, Seen::Front),
-        ([[0.25, -1.5], [1.25, -1.5], [1.35, -0.1], [0.1, -0.1]], -1.0, &front, Seen::Front),
+    let quads: [([[f32; 2]; 4], f32, &Shading, SurfaceSide); 4] = [
+        ([[-1.5, 0.1], [-1.25, 1.5], [-0.35, 1.5], [-0.25, 0.1]], 1.0, &both, SurfaceSide::Front),
+        ([[0.25, 0.1], [1.25, 0.1], [1.35, 1.5], [0.1, 1.5]], -1.0, &both, SurfaceSide::Back),
+        ([[-1.5, -1.5], [-1.25, -0.1], [-0.35, -0.1], [-0.25, -1.5]], 1.0, &front, SurfaceSide::Front),
+        ([[0.25, -1.5], [1.25, -1.5], [1.35, -0.1], [0.1, -0.1]], -1.0, &front, SurfaceSide::Front),
     ];
     let mut canvas = Canvas::new(0xff42_4243);
     for (corners, normal, shading, seen) in quads {
-        let given = corners.into_iter().map(|[x, y]| Given {
+        let given = corners.into_iter().map(|[x, y]| LitVertex {
             position: [x, y, -1.0, 1.0],
             normal: [0.0, 0.0, normal],
             diffuse: [1.0; 4],

@@ -1,6 +1,6 @@
 //! RAS-1 to RAS-5, WGT-1, NUM-4: every topology, smooth and flat, with and without perspective; float colours; large vertex counts.
 
-use super::lighting::{Given, Light, POWER_10, Seen, lit, material, shading};
+use super::lighting::{Light, LitVertex, POWER_10, SurfaceSide, lit, material, shading};
 use super::space::without_depth;
 use super::*;
 
@@ -115,13 +115,13 @@ fn lit_shape(topology: Topology, points: &[Corner], at: impl Iterator<Item = f32
     let light = Light::Infinite { direction: [0.0, 0.0, 1.0], half: [0.0; 3] };
     let lamp = (light, [[0.0; 3], [0.0, 1.0, 0.7], [0.0; 3]]);
     let shading = shading(&[lamp], material([0.0; 3], 1.0, POWER_10), 1 << 16 | 1);
-    let given = points.iter().zip(NORMALS).zip(at).map(|(([x, y, ..], normal), w)| Given {
+    let given = points.iter().zip(NORMALS).zip(at).map(|(([x, y, ..], normal), w)| LitVertex {
         position: [*x, *y, 0.1, w],
         normal,
         diffuse: [1.0; 4],
         specular: [0.0; 4],
     });
-    draw(topology, given.map(|given| lit(&given, &shading, Seen::Front)).collect())
+    draw(topology, given.map(|given| lit(&given, &shading, SurfaceSide::Front)).collect())
 }
 
 /// Adds the frames of Shade_model: colours, smooth and flat by either provoking vertex, and textures, which the shade model does not affect.

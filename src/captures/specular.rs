@@ -39,7 +39,7 @@ const POWERS: [(&str, [f32; 6]); 11] = [
 fn rows(
     canvas: &mut Canvas,
     world: impl Fn([f32; 4]) -> [[f32; 4]; 4],
-    seen: Seen,
+    seen: SurfaceSide,
     normals: [[f32; 3]; 4],
     colors: [[[f32; 4]; 2]; 4],
     shading: impl Fn(u32) -> Shading,
@@ -57,8 +57,12 @@ fn rows(
             let shading = shading(word);
             let shading = if enabled { shading } else { without_secondary(&shading) };
             let given = world([left, top, left + width, top + height]).into_iter().zip(normals).zip(colors);
-            let given =
-                given.map(|((position, normal), [diffuse, specular])| Given { position, normal, diffuse, specular });
+            let given = given.map(|((position, normal), [diffuse, specular])| LitVertex {
+                position,
+                normal,
+                diffuse,
+                specular,
+            });
             let combiners = Combiners::showing(register);
             canvas.draw(drawn(Topology::Quads, given, &shading, seen, &combiners));
             left += width + 15.0;
@@ -85,7 +89,7 @@ pub(super) fn fronts(frames: &mut Frames) {
             background(canvas, [0xff20_2020, 0xff00_0000], 14);
             let inverse = inverse();
             let near = |edges| corners(edges).map(|[x, y]| space::unproject_depth([x, y, 1.0, 1.0], &inverse));
-            rows(canvas, near, Seen::Front, lights::TILTED, CORNERS, |word| {
+            rows(canvas, near, SurfaceSide::Front, lights::TILTED, CORNERS, |word| {
                 let shading = shading(&lamps, material(DIM, 0.75, POWER_16), word);
                 if is_lit { shading } else { Shading { lighting: None, ..shading } }
             });
@@ -96,7 +100,7 @@ pub(super) fn fronts(frames: &mut Frames) {
         let shading = shading(&lamps, material([0.1; 3], 0.75, powers), SEPARATE);
         frames.paint(format!("SpecParams_FF_{name}"), 0xfe31_3131, move |canvas| {
             background(canvas, [0xff20_2020, 0xff00_0000], 20);
-            solids(canvas, [[0.0, 0.0, 0.0, 0.75], [0.0, 0.4, 0.0, 0.25]], &shading, Seen::Front);
+            solids(canvas, [[0.0, 0.0, 0.0, 0.75], [0.0, 0.4, 0.0, 0.25]], &shading, SurfaceSide::Front);
         });
     }
     for length in [0.972_f32, 0.973, 1.0, 1.008, 1.009] {
@@ -105,11 +109,11 @@ pub(super) fn fronts(frames: &mut Frames) {
 }
 
 /// Draws the secondary colours of all meshes.
-fn solids(canvas: &mut Canvas, colors: [[f32; 4]; 2], shading: &Shading, seen: Seen) {
+fn solids(canvas: &mut Canvas, colors: [[f32; 4]; 2], shading: &Shading, seen: SurfaceSide) {
     for places in meshes::solids() {
         let places: Vec<meshes::Place> = match seen {
-            Seen::Front => places,
-            Seen::Back => places.into_iter().map(|(position, [x, y, z])| (position, [x, y, -z])).collect(),
+            SurfaceSide::Front => places,
+            SurfaceSide::Back => places.into_iter().map(|(position, [x, y, z])| (position, [x, y, -z])).collect(),
         };
         let combiners = Combiners::showing(FinalRegister::SecondaryColor);
         canvas.draw(drawn(Topology::Triangles, of_mesh(&places, colors), shading, seen, &combiners));
@@ -126,7 +130,7 @@ fn disc(canvas: &mut Canvas, length: f32) {
     let given = |place: [f32; 2], normal: fn([f32; 4]) -> [f32; 3]| {
         let position = space::unproject(place, 0.0, &inverse);
         let normal = normal(position).map(|c| c * length);
-        Given { position, normal, diffuse: [0.0; 4], specular: [0.0; 4] }
+        LitVertex { position, normal, diffuse: [0.0; 4], specular: [0.0; 4] }
     };
     let step = (2.0 * std::f64::consts::PI) as f32 / 64.0;
     let rim = (0..=64_u8).map(|n| {
@@ -136,7 +140,7 @@ fn disc(canvas: &mut Canvas, length: f32) {
     });
     let fan = [given([320.0, 240.0], |_| [0.0, 0.0, -1.0])].into_iter().chain(rim);
     let combiners = opaque(FinalRegister::SecondaryColor);
-    canvas.draw(drawn(Topology::TriangleFan, fan, &shading, Seen::Front, &combiners));
+    canvas.draw(drawn(Topology::TriangleFan, fan, &shading, SurfaceSide::Front, &combiners));
 }
 
 /// Adds the frames of Specular_back that the fixed function draws.
@@ -151,7 +155,7 @@ pub(super) fn backs(frames: &mut Frames) {
             background(canvas, [0xff90_9090, 0xff20_2020], 14);
             let inverse = inverse();
             let world = |edges| unprojected_corners(edges, 1.0, &inverse);
-            rows(canvas, world, Seen::Back, normals, [given; 4], |word| {
+            rows(canvas, world, SurfaceSide::Back, normals, [given; 4], |word| {
                 let shading = behind(&lamps, POWER_16, 0.75, word);
                 if is_lit { shading } else { Shading { lighting: None, ..shading } }
             });
@@ -163,7 +167,7 @@ pub(super) fn backs(frames: &mut Frames) {
         let shading = behind(&lamps, powers, 0.75, SEPARATE);
         frames.paint(format!("SpecParams_FF_{name}"), 0xfe31_3131, move |canvas| {
             background(canvas, [0xff20_2020, 0xff00_0000], 20);
-            solids(canvas, [[1.0, 0.0, 1.0, 0.75], [1.0, 0.0, 1.0, 0.15]], &shading, Seen::Back);
+            solids(canvas, [[1.0, 0.0, 1.0, 0.75], [1.0, 0.0, 1.0, 0.15]], &shading, SurfaceSide::Back);
         });
     }
 }

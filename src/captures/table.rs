@@ -5,7 +5,7 @@ use ninebit_data::FRAMES;
 
 /// A known difference of a frame, and the rule that is not fully understood.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Open {
+pub struct KnownDifference {
     /// The rule's id.
     pub rule: &'static str,
     /// Number of pixels that differ.
@@ -18,7 +18,7 @@ pub(super) struct Row {
     pub(super) name: &'static str,
     pub(super) text: Vec<Rectangle>,
     pub(super) digest: &'static str,
-    pub(super) open: Option<Open>,
+    pub(super) open: Option<KnownDifference>,
 }
 
 /// Returns the rows in order.
@@ -37,7 +37,7 @@ fn row(line: &'static str) -> Option<Row> {
     let (text, digest) = (text.split(' ').filter_map(rectangle).collect(), fields.next()?);
     let open = |rest: &'static str| {
         let (rule, pixels) = rest.split_once(' ')?;
-        Some(Open { rule, pixels: pixels.parse().ok()? })
+        Some(KnownDifference { rule, pixels: pixels.parse().ok()? })
     };
     Some(Row { suite, name, text, digest, open: fields.next().and_then(open) })
 }

@@ -13,15 +13,15 @@ use crate::error::OutputError;
 
 /// The files of this run: canonical paths, and the names under which they were used.
 #[derive(Debug, Default)]
-struct Seen {
+struct FileUse {
     read: BTreeMap<PathBuf, PathBuf>,
     written: BTreeMap<PathBuf, PathBuf>,
 }
 
 static WATCHING: AtomicBool = AtomicBool::new(false);
-static SEEN: Mutex<Seen> = Mutex::new(Seen { read: BTreeMap::new(), written: BTreeMap::new() });
+static SEEN: Mutex<FileUse> = Mutex::new(FileUse { read: BTreeMap::new(), written: BTreeMap::new() });
 
-fn seen() -> MutexGuard<'static, Seen> {
+fn seen() -> MutexGuard<'static, FileUse> {
     SEEN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -51,7 +51,7 @@ pub(crate) fn folder_around(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-impl Seen {
+impl FileUse {
     fn compare(&self, place: &Path, path: &Path) -> Result<(), OutputError> {
         let path = path.to_path_buf();
         if let Some(input) = self.read.get(place) {
@@ -109,7 +109,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("temporary folder");
         let at = |name: &str| folder.path().join(name);
         std::fs::write(at("read.png"), b"").expect("written");
-        let mut seen = Seen::default();
+        let mut seen = FileUse::default();
         let place = |path: &Path| canonical_path(path).expect("a place");
         seen.read.insert(place(&at("read.png")), at("read.png"));
         seen.written.insert(place(&at("new.png")), at("new.png"));

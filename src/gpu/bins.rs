@@ -18,7 +18,7 @@ type Mask = [u32; 8];
 
 /// Which pixels of a tile a triangle covers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Covered {
+enum TileCoverage {
     /// Those that the printed function names.
     ByRule,
     /// All of them.
@@ -32,7 +32,7 @@ enum Covered {
 struct Entry {
     tile: u32,
     triangle: u32,
-    covered: Covered,
+    covered: TileCoverage,
     mask: Mask,
 }
 
@@ -143,9 +143,9 @@ impl Bins {
                 let is_inside = |axis: usize, (from, to): (i64, i64)| from <= corner[axis] && end[axis] <= to;
                 let covered = match () {
                     () if count == 0 => continue,
-                    () if i64::from(count) == (end[0] - corner[0]) * (end[1] - corner[1]) => Covered::All,
-                    () if is_plain && is_inside(0, columns) && is_inside(1, rows) => Covered::ByRule,
-                    () => Covered::ByMask,
+                    () if i64::from(count) == (end[0] - corner[0]) * (end[1] - corner[1]) => TileCoverage::All,
+                    () if is_plain && is_inside(0, columns) && is_inside(1, rows) => TileCoverage::ByRule,
+                    () => TileCoverage::ByMask,
                 };
                 let tile = (row * across + column) as u32;
                 self.entries.push(Entry { tile, triangle: self.triangles as u32, covered, mask });
@@ -186,12 +186,12 @@ impl Bins {
     /// the end.
     pub(crate) fn tiles_by_triangle(&self) -> Tiles {
         let mut entries: Vec<&Entry> = self.entries.iter().collect();
-        let is_full = |entry: &Entry| entry.covered == Covered::All;
+        let is_full = |entry: &Entry| entry.covered == TileCoverage::All;
         entries.sort_by_key(|entry| (entry.triangle, is_full(entry)));
         let (first, mut masks) = (2 * entries.len(), Vec::<u32>::new());
         let mut words = Vec::new();
         for entry in &entries {
-            let is_masked = entry.covered == Covered::ByMask;
+            let is_masked = entry.covered == TileCoverage::ByMask;
             words.extend([entry.tile, if is_masked { (first + masks.len()) as u32 } else { 0 }]);
             masks.extend(entry.mask.iter().filter(|_| is_masked));
         }

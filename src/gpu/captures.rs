@@ -20,7 +20,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     drawing: Drawing,
     #[command(flatten)]
-    chosen: Chosen,
+    chosen: EngineChoice,
 }
 
 /// Draws captured frames and compares them.

@@ -45,7 +45,7 @@ enum Command {
         #[command(flatten)]
         drawing: Drawing,
         #[command(flatten)]
-        chosen: Chosen,
+        chosen: EngineChoice,
     },
     /// Time how long scenes take to draw, by the GPU and by our engine
     ///
@@ -64,7 +64,7 @@ enum Command {
         #[command(flatten)]
         drawing: Drawing,
         #[command(flatten)]
-        chosen: Chosen,
+        chosen: EngineChoice,
     },
     /// Draw scenes by the GPU and by our engine, and compare every stored word
     ///
@@ -95,13 +95,13 @@ enum Engine {
 
 /// The choice of what draws.
 #[derive(Debug, Args)]
-struct Chosen {
+struct EngineChoice {
     /// What draws
     #[arg(long, value_enum, value_name = "ENGINE", default_value_t = Engine::Gpu)]
     engine: Engine,
 }
 
-impl Chosen {
+impl EngineChoice {
     /// Opens the adapter, unless our engine draws.
     fn open(&self, drawing: &Drawing) -> Result<Option<Gpu>, Failure> {
         (self.engine == Engine::Gpu).then(|| drawing.open()).transpose()
@@ -203,7 +203,7 @@ fn picture(
     path: &Path,
     output: &OsStr,
     target: Option<&str>,
-    (drawing, chosen): (&Drawing, &Chosen),
+    (drawing, chosen): (&Drawing, &EngineChoice),
 ) -> Result<(), Failure> {
     let (scene, plan) = drawing.load(path)?;
     let destination = Destination::from(output);
@@ -249,7 +249,12 @@ fn time_of_gpu(gpu: &Gpu, scene: &Scene, plan: &Plan, (text, frames): (Text, u32
 }
 
 /// Times scenes.
-fn bench(scenes: &[PathBuf], frames: u32, threads: u16, (drawing, chosen): (&Drawing, &Chosen)) -> Result<(), Failure> {
+fn bench(
+    scenes: &[PathBuf],
+    frames: u32,
+    threads: u16,
+    (drawing, chosen): (&Drawing, &EngineChoice),
+) -> Result<(), Failure> {
     let gpu = chosen.open(drawing)?;
     let mut text = format!(
         "the least of {frames} frames, {}\n{:>10} {:>10} {:>10} {:>10} {:>10} {:>10} {:>8}  scene\n",

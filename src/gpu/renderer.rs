@@ -37,7 +37,7 @@ struct Target {
 
 /// What a unit reads of a target.
 #[derive(Debug)]
-struct Sampled {
+struct TargetSource {
     unit: usize,
     target: usize,
     is_depth: bool,
@@ -55,11 +55,11 @@ struct Memory {
     /// The first word of each unit.
     bases: [u32; 4],
     /// Units that read targets.
-    sampled: Vec<Sampled>,
+    sampled: Vec<TargetSource>,
 }
 
 /// What all triangles of a draw share.
-struct Shared<'d> {
+struct DrawResources<'d> {
     number: usize,
     draw: &'d PlannedDraw,
     way: Way,
@@ -96,7 +96,7 @@ struct Work {
     draw: usize,
     pipelines: Pipelines,
     memory: wgpu::Buffer,
-    sampled: Vec<Sampled>,
+    sampled: Vec<TargetSource>,
     batches: Vec<Batch>,
 }
 
@@ -289,7 +289,7 @@ impl Builder<'_> {
         let Memory { words, bases, sampled } = self.memory(number, draw)?;
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
         let memory = self.gpu.buffer(&format!("the textures of draw {number}"), &words, usage)?;
-        let shared = Shared { number, draw, way, length, memory, bases, state };
+        let shared = DrawResources { number, draw, way, length, memory, bases, state };
         let batches = groups.iter().map(|bins| self.batch(&shared, bins)).collect::<Result<Vec<_>, _>>()?;
         Ok(Work { draw: number, pipelines, memory: shared.memory, sampled, batches })
     }
@@ -344,7 +344,7 @@ impl Builder<'_> {
                 let surface = &self.cleared.surfaces[target];
                 let held = if is_depth { &surface.depth } else { &surface.words };
                 let is_same = std::ptr::eq(held.as_slice(), &raw const **texels);
-                memory.sampled.push(Sampled { unit, target, is_depth, is_same, at: 4 * at as u64 });
+                memory.sampled.push(TargetSource { unit, target, is_depth, is_same, at: 4 * at as u64 });
             }
             memory.words.extend_from_slice(texels);
         }
@@ -352,7 +352,7 @@ impl Builder<'_> {
     }
 
     /// Returns the uniform words of some triangles, and their dispatches.
-    fn dispatches(&self, shared: &Shared<'_>, bins: &Bins, tiles: &Tiles) -> (Vec<u32>, Vec<Dispatch>) {
+    fn dispatches(&self, shared: &DrawResources<'_>, bins: &Bins, tiles: &Tiles) -> (Vec<u32>, Vec<Dispatch>) {
         let surface = &self.cleared.surfaces[shared.draw.target];
         let (mut uniform, mut dispatches) = (Vec::new(), Vec::new());
         for list in &tiles.lists {
@@ -369,7 +369,7 @@ impl Builder<'_> {
     }
 
     /// Fills the buffers of some triangles.
-    fn batch(&self, shared: &Shared<'_>, bins: &Bins) -> Result<Batch, Failure> {
+    fn batch(&self, shared: &DrawResources<'_>, bins: &Bins) -> Result<Batch, Failure> {
         let tiles = match shared.way {
             Way::ByTile => bins.tiles(),
             Way::ByTriangle => bins.tiles_by_triangle(),
@@ -397,7 +397,7 @@ impl Builder<'_> {
     }
 }
 
-impl Shared<'_> {
+impl DrawResources<'_> {
     /// Returns the uniform words of a dispatch.
     fn window(&self) -> usize {
         WORK + if self.way == Way::ByTriangle { self.length } else { 0 }

@@ -14,7 +14,7 @@ use crate::truth::Truth;
 
 /// A number of the interpolator.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Called<'a> {
+pub(crate) enum Interpolant<'a> {
     /// A number that the text holds.
     Known(Binary),
     /// A whole number, as an edge function is.
@@ -23,50 +23,50 @@ pub(crate) enum Called<'a> {
     Of(&'a Code, Operand, Sign),
 }
 
-impl<'a> Called<'a> {
+impl<'a> Interpolant<'a> {
     /// Returns a whole number.
-    pub(crate) fn whole(code: &'a Code, number: Number<'a>) -> Called<'a> {
+    pub(crate) fn whole(code: &'a Code, number: Number<'a>) -> Interpolant<'a> {
         let sign = if number.range().0 < 0 { Sign::Any } else { Sign::Positive };
-        Called::Whole(code, number.operand(), sign)
+        Interpolant::Whole(code, number.operand(), sign)
     }
 
     /// Returns the result of a line, which may be negative.
-    pub(crate) fn from_line(code: &'a Code, operand: Operand) -> Called<'a> {
-        Called::Of(code, operand, Sign::Any)
+    pub(crate) fn from_line(code: &'a Code, operand: Operand) -> Interpolant<'a> {
+        Interpolant::Of(code, operand, Sign::Any)
     }
 
     /// Returns a parameter of a printed function.
-    pub(crate) fn local(code: &'a Code, name: &'static str) -> Called<'a> {
+    pub(crate) fn local(code: &'a Code, name: &'static str) -> Interpolant<'a> {
         let input = Input::Local(Local { name, kind: Kind::Binary, range: ANY_BINARY });
-        Called::from_line(code, code.input(input, ANY_BINARY))
+        Interpolant::from_line(code, code.input(input, ANY_BINARY))
     }
 
     fn sign(self) -> Sign {
         match self {
-            Called::Known(known) if known.mantissa >= 0 => Sign::Positive,
-            Called::Known(_) => Sign::Any,
-            Called::Whole(.., sign) | Called::Of(.., sign) => sign,
+            Interpolant::Known(known) if known.mantissa >= 0 => Sign::Positive,
+            Interpolant::Known(_) => Sign::Any,
+            Interpolant::Whole(.., sign) | Interpolant::Of(.., sign) => sign,
         }
     }
 
     /// Returns the number 1.
-    pub(crate) const ONE: Called<'static> = Called::Known(Binary::ONE);
+    pub(crate) const ONE: Interpolant<'static> = Interpolant::Known(Binary::ONE);
 
     /// Returns the number as one value.
     pub(crate) fn operand(self, code: &Code) -> Operand {
         match self {
-            Called::Known(Binary { mantissa, exponent }) => {
+            Interpolant::Known(Binary { mantissa, exponent }) => {
                 code.make(Operation::Binary(Operand::Constant(mantissa), Operand::Constant(exponent)))
             }
-            Called::Whole(_, number, _) => code.make(Operation::Binary(number, Operand::Constant(0))),
-            Called::Of(_, operand, _) => operand,
+            Interpolant::Whole(_, number, _) => code.make(Operation::Binary(number, Operand::Constant(0))),
+            Interpolant::Of(_, operand, _) => operand,
         }
     }
 
     /// Returns mantissa and exponent, for rules that are no helpers.
     pub(crate) fn parts(self, code: &'a Code, mantissas: Range) -> Binary<Number<'a>> {
         match self {
-            Called::Known(Binary { mantissa, exponent }) => {
+            Interpolant::Known(Binary { mantissa, exponent }) => {
                 Binary { mantissa: Number::Constant(mantissa), exponent: Number::Constant(exponent) }
             }
             of => parts(code, of.operand(code), mantissas),
@@ -74,8 +74,8 @@ impl<'a> Called<'a> {
     }
 
     /// Names the value.
-    pub(crate) fn named(self, name: impl FnOnce() -> String) -> Called<'a> {
-        if let Called::Of(code, operand, _) = self {
+    pub(crate) fn named(self, name: impl FnOnce() -> String) -> Interpolant<'a> {
+        if let Interpolant::Of(code, operand, _) = self {
             code.name(operand, name);
         }
         self
@@ -83,39 +83,39 @@ impl<'a> Called<'a> {
 
     /// Returns a number that the text holds.
     fn known(self) -> Binary {
-        if let Called::Known(known) = self { known } else { Binary::ONE }
+        if let Interpolant::Known(known) = self { known } else { Binary::ONE }
     }
 
     fn code(self) -> Option<&'a Code> {
         match self {
-            Called::Known(_) => None,
-            Called::Whole(code, ..) | Called::Of(code, ..) => Some(code),
+            Interpolant::Known(_) => None,
+            Interpolant::Whole(code, ..) | Interpolant::Of(code, ..) => Some(code),
         }
     }
 
     /// Returns what a helper makes of numbers. Of known ones it is known.
     fn of_helper(
         helper: impl Fn(Sign) -> Helper,
-        of: &[Called<'a>],
+        of: &[Interpolant<'a>],
         known: impl FnOnce(&[Binary]) -> Binary,
-    ) -> Called<'a> {
+    ) -> Interpolant<'a> {
         let sign = of.iter().map(|number| number.sign()).max().unwrap_or(Sign::Any);
         let code = of.iter().find_map(|number| number.code());
         match code {
             Some(code) => {
                 let operands: Vec<Operand> = of.iter().map(|number| number.operand(code)).collect();
-                Called::Of(code, call(code, helper(sign), &operands), sign)
+                Interpolant::Of(code, call(code, helper(sign), &operands), sign)
             }
             None => {
                 let of: Vec<Binary> = of.iter().map(|number| number.known()).collect();
-                Called::Known(known(&of))
+                Interpolant::Known(known(&of))
             }
         }
     }
 
     /// DEP-6: returns 1 less two weights, cut.
-    pub(crate) fn cut_rest(code: &'a Code, a: Called<'a>, b: Called<'a>) -> Called<'a> {
-        Called::from_line(code, call(code, Helper::CutRest, &[a.operand(code), b.operand(code)]))
+    pub(crate) fn cut_rest(code: &'a Code, a: Interpolant<'a>, b: Interpolant<'a>) -> Interpolant<'a> {
+        Interpolant::from_line(code, call(code, Helper::CutRest, &[a.operand(code), b.operand(code)]))
     }
 }
 
@@ -133,59 +133,61 @@ pub(crate) fn counted<'a>(code: &'a Code, helper: Helper, of: &[Operand]) -> Num
     Number::new(code, call(code, helper, of))
 }
 
-impl<'a> weights::Number for Called<'a> {
+impl<'a> weights::Number for Interpolant<'a> {
     type Exponent = Number<'a>;
     type Choice = Truth<'a>;
 
-    fn one() -> Called<'a> {
-        Called::ONE
+    fn one() -> Interpolant<'a> {
+        Interpolant::ONE
     }
-    fn from_edge(edge: i64) -> Called<'a> {
-        Called::Known(Binary::whole(edge))
+    fn from_edge(edge: i64) -> Interpolant<'a> {
+        Interpolant::Known(Binary::whole(edge))
     }
-    fn from_f32(number: f32) -> Called<'a> {
-        Called::Known(Binary::new(number))
+    fn from_f32(number: f32) -> Interpolant<'a> {
+        Interpolant::Known(Binary::new(number))
     }
-    fn cut(self) -> Called<'a> {
+    fn cut(self) -> Interpolant<'a> {
         match self {
-            Called::Whole(code, number, sign) => Called::Of(code, call(code, Helper::Cut(sign), &[number]), sign),
-            Called::Known(known) => Called::Known(weights::Number::cut(known)),
-            Called::Of(code, _, sign) => {
+            Interpolant::Whole(code, number, sign) => {
+                Interpolant::Of(code, call(code, Helper::Cut(sign), &[number]), sign)
+            }
+            Interpolant::Known(known) => Interpolant::Known(weights::Number::cut(known)),
+            Interpolant::Of(code, _, sign) => {
                 let Binary { mantissa, exponent } = weights::Number::cut(self.parts(code, MANTISSA));
-                Called::Of(code, code.make(Operation::Binary(mantissa.operand(), exponent.operand())), sign)
+                Interpolant::Of(code, code.make(Operation::Binary(mantissa.operand(), exponent.operand())), sign)
             }
         }
     }
-    fn product<const BITS: u32>(self, other: Called<'a>) -> Called<'a> {
+    fn product<const BITS: u32>(self, other: Interpolant<'a>) -> Interpolant<'a> {
         let helper = |sign| if BITS == 24 { Helper::Product(sign) } else { Helper::Share(sign) };
-        Called::of_helper(helper, &[self, other], |of| weights::Number::product::<BITS>(of[0], of[1]))
+        Interpolant::of_helper(helper, &[self, other], |of| weights::Number::product::<BITS>(of[0], of[1]))
     }
-    fn linear(number: Called<'a>, [first, third]: [[Called<'a>; 2]; 2]) -> Called<'a> {
+    fn linear(number: Interpolant<'a>, [first, third]: [[Interpolant<'a>; 2]; 2]) -> Interpolant<'a> {
         let sign = first[0].sign().max(third[0].sign());
-        Called::of_helper(
+        Interpolant::of_helper(
             |_| Helper::Linear(sign),
             &[first[0], first[1], number, third[0], third[1]],
             |of| weights::Number::linear(of[2], [[of[0], of[1]], [of[3], of[4]]]),
         )
     }
-    fn sum_of_products(factors: [[Called<'a>; 2]; 3]) -> Called<'a> {
-        Called::of_helper(
+    fn sum_of_products(factors: [[Interpolant<'a>; 2]; 3]) -> Interpolant<'a> {
+        Interpolant::of_helper(
             |_| Helper::Depth,
             factors.as_flattened(),
             |of| Binary::sum_of_products([[of[0], of[1]], [of[2], of[3]], [of[4], of[5]]]),
         )
     }
-    fn sum_of_edges(edges: [Called<'a>; 3]) -> Called<'a> {
-        Called::of_helper(Helper::Sum, &edges, |of| Binary::sum_of_edges([of[0], of[1], of[2]]))
+    fn sum_of_edges(edges: [Interpolant<'a>; 3]) -> Interpolant<'a> {
+        Interpolant::of_helper(Helper::Sum, &edges, |of| Binary::sum_of_edges([of[0], of[1], of[2]]))
     }
-    fn reciprocal(self) -> Called<'a> {
-        Called::of_helper(Helper::Reciprocal, &[self], |of| of[0].reciprocal())
+    fn reciprocal(self) -> Interpolant<'a> {
+        Interpolant::of_helper(Helper::Reciprocal, &[self], |of| of[0].reciprocal())
     }
-    fn rest(a: Called<'a>, b: Called<'a>) -> Called<'a> {
-        Called::of_helper(|_| Helper::Rest(Sign::Any), &[a, b], |of| Binary::rest(of[0], of[1]))
+    fn rest(a: Interpolant<'a>, b: Interpolant<'a>) -> Interpolant<'a> {
+        Interpolant::of_helper(|_| Helper::Rest(Sign::Any), &[a, b], |of| Binary::rest(of[0], of[1]))
     }
-    fn rest_of_weights(a: Called<'a>, b: Called<'a>) -> Called<'a> {
-        Called::of_helper(|_| Helper::Rest(Sign::Positive), &[a, b], |of| Binary::rest_of_weights(of[0], of[1]))
+    fn rest_of_weights(a: Interpolant<'a>, b: Interpolant<'a>) -> Interpolant<'a> {
+        Interpolant::of_helper(|_| Helper::Rest(Sign::Positive), &[a, b], |of| Binary::rest_of_weights(of[0], of[1]))
     }
     fn exponent(self) -> Number<'a> {
         match self.code() {
@@ -194,7 +196,7 @@ impl<'a> weights::Number for Called<'a> {
             }
             Some(code) => counted(code, Helper::Exponent, &[self.operand(code)]),
             None => match self {
-                Called::Known(known) => Number::Constant(weights::Number::exponent(known)),
+                Interpolant::Known(known) => Number::Constant(weights::Number::exponent(known)),
                 _ => Number::Constant(0),
             },
         }
@@ -202,13 +204,13 @@ impl<'a> weights::Number for Called<'a> {
     fn is_above(a: Number<'a>, b: Number<'a>) -> Truth<'a> {
         b.is_below(a)
     }
-    fn or(self, condition: Truth<'a>, other: Called<'a>) -> Called<'a> {
+    fn or(self, condition: Truth<'a>, other: Interpolant<'a>) -> Interpolant<'a> {
         match condition {
             Truth::Known(true) => self,
             Truth::Known(false) => other,
             Truth::Of(code, test) => {
                 let of = [self.operand(code), other.operand(code)];
-                Called::Of(code, code.make(Operation::Choose(test, of)), self.sign().max(other.sign()))
+                Interpolant::Of(code, code.make(Operation::Choose(test, of)), self.sign().max(other.sign()))
             }
         }
     }

@@ -327,7 +327,7 @@ fn bits_of(n: i64) -> i64 {
 }
 
 /// What a function is given while it runs: a closure gives inputs, and memories of zeros.
-pub trait Given {
+pub trait InputSource {
     /// Returns the value of an input.
     fn input(&mut self, input: Input) -> i64;
     /// Returns a word of a unit's memory.
@@ -336,7 +336,7 @@ pub trait Given {
     }
 }
 
-impl<F: FnMut(Input) -> i64> Given for F {
+impl<F: FnMut(Input) -> i64> InputSource for F {
     fn input(&mut self, input: Input) -> i64 {
         self(input)
     }
@@ -346,7 +346,7 @@ impl<F: FnMut(Input) -> i64> Given for F {
 ///
 /// # Panics
 /// In debug builds, if a result is outside its range.
-pub fn run(lines: &[Line], given: impl Given) -> Vec<i64> {
+pub fn run(lines: &[Line], given: impl InputSource) -> Vec<i64> {
     run_changed(lines, given, |line, value| {
         let Line { range, .. } = &lines[line];
         debug_assert!((range.0..=range.1).contains(&value), "{value} of line {line} {:?}", lines[line]);
@@ -356,7 +356,7 @@ pub fn run(lines: &[Line], given: impl Given) -> Vec<i64> {
 
 /// Runs all lines like [`run`], with each result replaced by `change` of its line's index and value, to find what depends on it. Ranges are not
 /// checked.
-pub fn run_changed(lines: &[Line], mut given: impl Given, mut change: impl FnMut(usize, i64) -> i64) -> Vec<i64> {
+pub fn run_changed(lines: &[Line], mut given: impl InputSource, mut change: impl FnMut(usize, i64) -> i64) -> Vec<i64> {
     let mut values: Vec<i64> = Vec::with_capacity(lines.len());
     for (n, line) in lines.iter().enumerate() {
         let value = match line.operation {

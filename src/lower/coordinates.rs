@@ -9,7 +9,7 @@ use ninebit::texture::cube::{Face, major_axis};
 use ninebit::texture::planned::PlannedUnit;
 use ninebit::texture::{lod, shader};
 
-use crate::binary::{Called, counted};
+use crate::binary::{Interpolant, counted};
 use crate::code::{Code, Operand, Operation};
 use crate::helper::Helper;
 use crate::input::Input;
@@ -36,15 +36,15 @@ impl<'a> Facing<'a> {
 }
 
 /// A direction on a face: sc, tc, |ma|.
-type OnFace<'a> = [Called<'a>; 3];
+type OnFace<'a> = [Interpolant<'a>; 3];
 
 impl<'a> Unit<'a, '_, '_> {
-    pub(crate) fn component(&self, sample: &Sample<'a>, n: usize) -> Called<'a> {
+    pub(crate) fn component(&self, sample: &Sample<'a>, n: usize) -> Interpolant<'a> {
         self.interpolator.coordinate(self.unit.index, n, sample)
     }
 
     /// Returns the direction into a cube map.
-    pub(crate) fn direction(&self, place: Place<'a>, sample: &Sample<'a>) -> Option<[Called<'a>; 3]> {
+    pub(crate) fn direction(&self, place: Place<'a>, sample: &Sample<'a>) -> Option<[Interpolant<'a>; 3]> {
         match place {
             Place::Own(Projection::Direction) => Some([0, 1, 2].map(|n| self.component(sample, n))),
             Place::Vector(vector) => Some(vector),
@@ -53,7 +53,7 @@ impl<'a> Unit<'a, '_, '_> {
     }
 
     /// TEX-12: returns the face that a direction meets.
-    pub(crate) fn facing(&self, direction: [Called<'a>; 3]) -> Facing<'a> {
+    pub(crate) fn facing(&self, direction: [Interpolant<'a>; 3]) -> Facing<'a> {
         let code = self.interpolator.code;
         code.by("TEX-12");
         let [x, y, z] = direction.map(|n| n.parts(code, (-(1 << 26), 1 << 26)));
@@ -63,7 +63,7 @@ impl<'a> Unit<'a, '_, '_> {
     }
 
     /// TEX-12: returns sc, tc and |ma| of a direction on a face.
-    fn on_face(&self, direction: [Called<'a>; 3], facing: Facing<'a>) -> OnFace<'a> {
+    fn on_face(&self, direction: [Interpolant<'a>; 3], facing: Facing<'a>) -> OnFace<'a> {
         let Facing { is_x, is_y, negative } = facing;
         let code = self.interpolator.code;
         code.by("TEX-12");
@@ -84,17 +84,20 @@ impl<'a> Unit<'a, '_, '_> {
             let sign = of_x.or(is_x, of_y.or(is_y, of_z));
             let is_negated = !sign.is_zero();
             let number = number.negated().or(is_negated, number);
-            Called::from_line(code, code.make(Operation::Binary(number.mantissa.operand(), number.exponent.operand())))
+            Interpolant::from_line(
+                code,
+                code.make(Operation::Binary(number.mantissa.operand(), number.exponent.operand())),
+            )
         })
     }
 
-    pub(crate) fn floored(&self, value: Called<'a>, size: Number<'a>) -> Number<'a> {
+    pub(crate) fn floored(&self, value: Interpolant<'a>, size: Number<'a>) -> Number<'a> {
         let code = self.interpolator.code;
         let of = [value.operand(code), size.operand(), Operand::Constant(8), Operand::Constant(1 << 24)];
         counted(code, Helper::Floor, &of)
     }
 
-    pub(crate) fn ratio(&self, s: Called<'a>, q: Called<'a>, size: Number<'a>) -> Number<'a> {
+    pub(crate) fn ratio(&self, s: Interpolant<'a>, q: Interpolant<'a>, size: Number<'a>) -> Number<'a> {
         let code = self.interpolator.code;
         counted(code, Helper::Ratio, &[s.operand(code), q.operand(code), size.operand()])
     }
@@ -157,7 +160,13 @@ impl<'a> Unit<'a, '_, '_> {
     }
 
     /// TSH-7: returns a coordinate that is displaced, in 2^-`power` texel.
-    fn moved(&self, value: Called<'a>, offset: Number<'a>, side: Operand, (power, limit): (i64, i64)) -> Number<'a> {
+    fn moved(
+        &self,
+        value: Interpolant<'a>,
+        offset: Number<'a>,
+        side: Operand,
+        (power, limit): (i64, i64),
+    ) -> Number<'a> {
         let code = self.interpolator.code;
         let of = [value.operand(code), offset.operand(), side, Operand::Constant(power), Operand::Constant(limit)];
         counted(code, Helper::Moved, &of)
@@ -191,7 +200,7 @@ impl<'a> Unit<'a, '_, '_> {
     ) -> ([Number<'a>; 2], Truth<'a>) {
         let (code, sample, place) = (self.interpolator.code, self.sample, self.place);
         let sides = sides.map(Number::operand);
-        let is_positive = |n: Called<'a>| Number::ZERO.is_below(n.parts(code, crate::code::MANTISSA).mantissa);
+        let is_positive = |n: Interpolant<'a>| Number::ZERO.is_below(n.parts(code, crate::code::MANTISSA).mantissa);
         code.by("TEX-11");
         let mut behind = !is_positive(sample.sum);
         if let (Some(facing), Some(direction)) = (facing, self.direction(place, sample)) {

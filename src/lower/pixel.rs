@@ -11,7 +11,7 @@ use crate::code::{Code, Line, Operand, Operation, Range, Test, collected};
 use crate::input::Input;
 use crate::number::{Number, Word};
 use crate::order::{Block, Listing};
-use crate::texel::{Given, Sampler};
+use crate::texel::{CallerTexels, Sampler};
 
 /// The inputs of a printed function that concern textures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -227,7 +227,7 @@ impl Function {
                 Some(unit) if options.textures == Textures::Words && planned.shader.is_none() && reads_words(unit) => {
                     let sampler = Sampler::new(unit);
                     let border = builder.constants(unit.state.border_color, |c| Input::BorderColor(n, c));
-                    sampler.register(border, &Given(n, |input| builder.input(input)), &code).0
+                    sampler.register(border, &CallerTexels(n, |input| builder.input(input)), &code).0
                 }
                 // Only signed channels, and results of texture shaders, can be negative.
                 Some(unit) if unit.state.signed == [false; 4] && planned.shader.is_none() => {

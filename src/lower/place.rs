@@ -9,7 +9,7 @@ use ninebit::texture::filter;
 use ninebit::texture::lod::Selection;
 use ninebit::texture::planned::PlannedUnit;
 
-use crate::binary::Called;
+use crate::binary::Interpolant;
 use crate::code::{Code, Operation};
 use crate::coordinates::{Facing, is_point, log2_ratio, pairs_of_quad};
 use crate::input::Weight;
@@ -54,7 +54,7 @@ pub(crate) enum Place<'a> {
     /// Two results of the dot unit, patterns of binary32 (TSH-4).
     Floats([Number<'a>; 2]),
     /// A direction that the dot unit computed (TSH-4, TSH-5).
-    Vector([Called<'a>; 3]),
+    Vector([Interpolant<'a>; 3]),
 }
 
 /// A unit at a pixel.

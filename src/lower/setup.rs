@@ -13,7 +13,7 @@ use ninebit::raster::weights::{Linear, ratios};
 use ninebit::state::{CompareFunction, Profile, ShaderOperation};
 use ninebit::texture::coordinates::wrapped;
 
-use crate::binary::{Called, call};
+use crate::binary::{Interpolant, call};
 use crate::code::{Code, Line, Operand, Operation, Test, run, value_of};
 use crate::helper::Helper;
 use crate::input::Input;
@@ -180,8 +180,8 @@ impl<'a> Reader<'a> {
     }
 
     /// Returns a binary32 number, of which bits are given.
-    fn number(&self, bits: Number<'a>) -> Called<'a> {
-        Called::from_line(self.code, call(self.code, Helper::Split, &[bits.operand()]))
+    fn number(&self, bits: Number<'a>) -> Interpolant<'a> {
+        Interpolant::from_line(self.code, call(self.code, Helper::Split, &[bits.operand()]))
     }
 
     fn difference(&self, a: Number<'a>, b: Number<'a>) -> Number<'a> {
@@ -252,7 +252,7 @@ impl<'a> Reader<'a> {
         };
         let is_flat = equal(w[0], w[1]) & equal(w[1], w[2]);
         let ratios = ratios(w.map(|w| self.number(w)));
-        let one = Called::Known(Binary::ONE);
+        let one = Interpolant::Known(Binary::ONE);
         ninebit::raster::weights::Number::or(one, is_flat | !self.state.perspective, ratios[k]).operand(self.code)
     }
 

@@ -9,7 +9,7 @@ use ninebit::state::*;
 use ninebit::texture::stage::PlannedShader;
 use ninebit::texture::{dot, shader, single};
 
-use crate::binary::{Called, counted};
+use crate::binary::{Interpolant, counted};
 use crate::code::{Code, Operand};
 use crate::helper::Helper;
 use crate::number::Number;
@@ -32,7 +32,7 @@ impl<'a> Single<'a> {
     }
 
     /// Returns the nearest to a number.
-    pub(crate) fn rounded(code: &'a Code, number: Called<'a>) -> Single<'a> {
+    pub(crate) fn rounded(code: &'a Code, number: Interpolant<'a>) -> Single<'a> {
         Single(counted(code, Helper::Rounded, &[number.operand(code)]))
     }
 
@@ -211,8 +211,9 @@ impl<'a> Stages<'a, '_, '_> {
         let code = self.whole.code;
         code.by("TEX-13");
         let patterns = shader::finite_vector(vector.map(|component| component.0));
-        let number =
-            |bits: Number<'a>| Called::from_line(code, crate::binary::call(code, Helper::Split, &[bits.operand()]));
+        let number = |bits: Number<'a>| {
+            Interpolant::from_line(code, crate::binary::call(code, Helper::Split, &[bits.operand()]))
+        };
         Place::Vector(patterns.map(number))
     }
 
@@ -220,7 +221,7 @@ impl<'a> Stages<'a, '_, '_> {
     fn lit(&self, index: usize, color: [Number<'a>; 4], state: [f32; 2], results: &State<'a>) -> [Number<'a>; 4] {
         let (code, planned) = (self.whole.code, &self.shader.stages[index]);
         let [red, ..] = self.bytes(planned.state.previous, results);
-        let [scale, offset] = state.map(|f| Called::Known(Binary::new(f)).operand(code));
+        let [scale, offset] = state.map(|f| Interpolant::Known(Binary::new(f)).operand(code));
         [0, 1, 2, 3].map(|n: usize| {
             if n == 3 && !planned.lights_alpha || planned.live >> n & 1 == 0 {
                 return color[n];
@@ -232,7 +233,7 @@ impl<'a> Stages<'a, '_, '_> {
 
 impl<'a> Interpolator<'a> {
     /// Returns a component of a stage's coordinates.
-    fn component(&self, index: usize, n: usize, sample: &Sample<'a>) -> Called<'a> {
+    fn component(&self, index: usize, n: usize, sample: &Sample<'a>) -> Interpolant<'a> {
         self.code.by("WGT-1");
         self.coordinate(index, n, sample)
     }

@@ -22,9 +22,9 @@ pub(crate) trait Texels<'a> {
 }
 
 /// Texels that the caller has fetched.
-pub(crate) struct Given<F>(pub(crate) usize, pub(crate) F);
+pub(crate) struct CallerTexels<F>(pub(crate) usize, pub(crate) F);
 
-impl<'a, F: Fn(Input) -> Number<'a>> Texels<'a> for Given<F> {
+impl<'a, F: Fn(Input) -> Number<'a>> Texels<'a> for CallerTexels<F> {
     fn word(&self, at: usize) -> Number<'a> {
         self.1(Input::Texel(self.0, at))
     }

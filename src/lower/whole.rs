@@ -13,7 +13,7 @@ use ninebit::raster::{depth, interpolate};
 use ninebit::rop::stencil;
 use ninebit::state::*;
 
-use crate::binary::{Called, counted};
+use crate::binary::{Interpolant, counted};
 use crate::code::{Code, Operand};
 use crate::helper::{Helper, Sign};
 use crate::input::Input;
@@ -25,9 +25,9 @@ use crate::truth::Truth;
 #[derive(Clone, Copy)]
 pub(crate) struct Sample<'a> {
     /// The weights b_k.
-    pub(crate) b: [Called<'a>; 3],
+    pub(crate) b: [Interpolant<'a>; 3],
     /// Sum of the edge numbers.
-    pub(crate) sum: Called<'a>,
+    pub(crate) sum: Interpolant<'a>,
 }
 
 /// What reads the rules of the interpolator.
@@ -56,22 +56,22 @@ impl<'a> Interpolator<'a> {
         Number::new(self.code, self.code.input(input, input.range()))
     }
 
-    fn binary(&self, field: Field) -> Called<'a> {
+    fn binary(&self, field: Field) -> Interpolant<'a> {
         let input = Input::Triangle(field);
         let sign = if matches!(field, Field::Ratio(_)) { Sign::Positive } else { Sign::Any };
-        Called::Of(self.code, self.code.input(input, input.range()), sign)
+        Interpolant::Of(self.code, self.code.input(input, input.range()), sign)
     }
 
     /// Returns a number of the vertices.
-    pub(crate) fn linear(&self, of: impl Fn(Part) -> Field) -> Linear<Called<'a>> {
+    pub(crate) fn linear(&self, of: impl Fn(Part) -> Field) -> Linear<Interpolant<'a>> {
         let part = |part: Part| self.binary(of(part));
         Linear { second: part(Part::Second), first: part(Part::First), third: part(Part::Third) }
     }
 
     /// Returns a component of a unit's coordinates; printed functions of any unit have them as a parameter.
-    pub(crate) fn coordinate(&self, unit: usize, n: usize, sample: &Sample<'a>) -> Called<'a> {
+    pub(crate) fn coordinate(&self, unit: usize, n: usize, sample: &Sample<'a>) -> Interpolant<'a> {
         if unit == ANY_UNIT {
-            return Called::local(self.code, ["own[0]", "own[1]", "own[2]", "own[3]"][n]);
+            return Interpolant::local(self.code, ["own[0]", "own[1]", "own[2]", "own[3]"][n]);
         }
         self.linear(|part| Field::Coordinate(unit, n, part)).at(sample.b)
     }
@@ -94,9 +94,9 @@ impl<'a> Interpolator<'a> {
     pub(crate) fn sample<const COVERED: bool>(&self, e: [Number<'a>; 3]) -> Sample<'a> {
         self.code.by("WGT-1");
         let ratios =
-            self.perspective.then(|| [self.binary(Field::Ratio(0)), Called::ONE, self.binary(Field::Ratio(2))]);
-        let edges = weights::edge_numbers(e.map(|e| Called::whole(self.code, e)), ratios);
-        let sum = Called::sum_of_edges(edges);
+            self.perspective.then(|| [self.binary(Field::Ratio(0)), Interpolant::ONE, self.binary(Field::Ratio(2))]);
+        let edges = weights::edge_numbers(e.map(|e| Interpolant::whole(self.code, e)), ratios);
+        let sum = Interpolant::sum_of_edges(edges);
         let b = weights::completed::<_, COVERED>(weights::shares(edges, sum.reciprocal()));
         let b = if COVERED { [0, 1, 2].map(|k: usize| b[k].named(|| format!("b{k}"))) } else { b };
         Sample { b, sum }
@@ -131,8 +131,13 @@ impl<'a> Interpolator<'a> {
     }
 
     /// Returns the fog factor as a byte, by a mode, the parameters of its line and the fog coordinate, or by the vertices' own factor.
-    pub(crate) fn fog_by(&self, mode: Option<FogMode>, line: [Binary<Number<'a>>; 2], value: Called<'a>) -> Number<'a> {
-        let parts = |value: Called<'a>| value.parts(self.code, (-(1 << 26), 1 << 26));
+    pub(crate) fn fog_by(
+        &self,
+        mode: Option<FogMode>,
+        line: [Binary<Number<'a>>; 2],
+        value: Interpolant<'a>,
+    ) -> Number<'a> {
+        let parts = |value: Interpolant<'a>| value.parts(self.code, (-(1 << 26), 1 << 26));
         let byte = match mode {
             None => {
                 let value = parts(value);
@@ -163,28 +168,29 @@ impl<'a> Interpolator<'a> {
     }
 
     /// DEP-1: returns the depth between those of the vertices.
-    fn z_depth(&self, edges: [Called<'a>; 3], e: [Number<'a>; 3]) -> Called<'a> {
+    fn z_depth(&self, edges: [Interpolant<'a>; 3], e: [Number<'a>; 3]) -> Interpolant<'a> {
         let edges = weights::edge_numbers(edges, None);
-        let shares = weights::shares(edges, Called::sum_of_edges(edges).reciprocal());
+        let shares = weights::shares(edges, Interpolant::sum_of_edges(edges).reciprocal());
         self.code.by("DEP-1");
         let reference = depth::reference_vertex(e);
-        let of = |value: &dyn Fn(usize) -> Called<'a>| value(0).or(reference[0], value(1).or(reference[1], value(2)));
+        let of =
+            |value: &dyn Fn(usize) -> Interpolant<'a>| value(0).or(reference[0], value(1).or(reference[1], value(2)));
         let differences = [0, 1, 2].map(|k: usize| of(&|r| self.binary(Field::DepthDifference(r, k))));
         depth::sum_of_terms(shares, of(&|r| self.binary(Field::Depth(r))), differences, reference)
     }
 
     /// DEP-6: returns w between those of the vertices.
-    fn w_depth(&self, edges: [Called<'a>; 3]) -> Called<'a> {
+    fn w_depth(&self, edges: [Interpolant<'a>; 3]) -> Interpolant<'a> {
         self.code.by("DEP-6");
-        let ratios = [self.binary(Field::DepthRatio(0)), Called::ONE, self.binary(Field::DepthRatio(2))];
+        let ratios = [self.binary(Field::DepthRatio(0)), Interpolant::ONE, self.binary(Field::DepthRatio(2))];
         let difference = |k: usize| self.binary(Field::DepthDifference(1, k));
         let w = Linear { second: self.binary(Field::Depth(1)), first: difference(0), third: difference(2) };
-        depth::w_depth(edges, ratios, w, |a, b| Called::cut_rest(self.code, a, b))
+        depth::w_depth(edges, ratios, w, |a, b| Interpolant::cut_rest(self.code, a, b))
     }
 
     /// DEP-1, DEP-6: returns the depth between those of the vertices, or w.
     pub(crate) fn depth_between(&self, w_buffer: bool, e: [Number<'a>; 3]) -> Binary<Number<'a>> {
-        let edges = e.map(|e| Called::whole(self.code, e));
+        let edges = e.map(|e| Interpolant::whole(self.code, e));
         let value = if w_buffer { self.w_depth(edges) } else { self.z_depth(edges, e) };
         value.parts(self.code, (-(1 << 31) + 1, (1 << 31) - 1))
     }
@@ -224,7 +230,7 @@ impl<'a> Outcome<'a> {
 
 impl<'a> Whole<'a, '_> {
     /// Returns the fog factor as a byte.
-    pub(crate) fn fog(&self, b: [Called<'a>; 3]) -> Number<'a> {
+    pub(crate) fn fog(&self, b: [Interpolant<'a>; 3]) -> Number<'a> {
         let fog = &self.planned.fog;
         if !fog.enabled {
             // CMB-13: without fog the factor is 1.

@@ -19,7 +19,7 @@ pub struct ShadingWork {
 
 impl ShadingWork {
     /// Adds the pixels of draws.
-    pub fn from_draws(draws: impl IntoIterator<Item = engine::Shaded>) -> ShadingWork {
+    pub fn from_draws(draws: impl IntoIterator<Item = engine::ShadedPixels>) -> ShadingWork {
         let (mut pixels, mut exact) = (0_u64, true);
         for draw in draws {
             pixels = pixels.saturating_add(draw.pixels);
@@ -46,12 +46,12 @@ mod tests {
 
     #[test]
     fn work_is_said_in_words() {
-        let text = |pixels, exact| ShadingWork::from_draws([engine::Shaded { pixels, exact }]).text();
+        let text = |pixels, exact| ShadingWork::from_draws([engine::ShadedPixels { pixels, exact }]).text();
         assert_eq!(text(307_200, true), "307200, less than a second on one core");
         assert_eq!(text(150_000_000, true), "150000000, some 1 second on one core");
         assert_eq!(text(100_000_000_000, false), "at most 100000000000, some 13 minutes on one core");
         assert_eq!(text(6_800_000_000_000, false), "at most 6800000000000, some 15 hours on one core");
-        let both = [(1, true), (2, false)].map(|(pixels, exact)| engine::Shaded { pixels, exact });
+        let both = [(1, true), (2, false)].map(|(pixels, exact)| engine::ShadedPixels { pixels, exact });
         assert_eq!((ShadingWork::from_draws(both).pixels, ShadingWork::from_draws(both).exact), (3, false));
     }
 }

@@ -41,7 +41,7 @@ pub fn count(plan: &Plan) -> Vec<DrawCounts> {
 
 /// Number of pixels that a draw shades.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Shaded {
+pub struct ShadedPixels {
     /// Covered pixels, once for each triangle that covers them.
     pub pixels: u64,
     /// Whether the pixels were counted; otherwise they are an upper bound.
@@ -53,16 +53,16 @@ pub(super) const ROWS: u64 = 1 << 22;
 
 /// Returns the number of pixels that each draw of a plan shades. They are counted unless their triangles have more than some millions of rows; the
 /// draws that are left then have upper bounds, so that the answer takes little time for any plan.
-pub fn shaded(plan: &Plan) -> Vec<Shaded> {
+pub fn shaded(plan: &Plan) -> Vec<ShadedPixels> {
     let mut left = ROWS;
     let draw = |planned: &PlannedDraw| {
         let most = Most::new(plan, planned);
         match left.checked_sub(most.rows) {
             Some(rest) => {
                 left = rest;
-                Shaded { pixels: fragments(plan, planned), exact: true }
+                ShadedPixels { pixels: fragments(plan, planned), exact: true }
             }
-            None => Shaded { pixels: most.pixels, exact: false },
+            None => ShadedPixels { pixels: most.pixels, exact: false },
         }
     };
     plan.draws.iter().map(draw).collect()
@@ -74,8 +74,9 @@ pub fn shaded(plan: &Plan) -> Vec<Shaded> {
 /// The plan shades more, or so many that they are not counted and may be more. The error names the draw with the most.
 #[allow(clippy::result_large_err, reason = "it is made once a scene")]
 pub fn affordable(plan: &Plan, most: u64) -> Result<(), PlanError> {
-    let total = |draws: &[Shaded]| draws.iter().map(|draw| draw.pixels).fold(0, u64::saturating_add);
-    let bounds = plan.draws.iter().map(|planned| Shaded { pixels: Most::new(plan, planned).pixels, exact: false });
+    let total = |draws: &[ShadedPixels]| draws.iter().map(|draw| draw.pixels).fold(0, u64::saturating_add);
+    let bounds =
+        plan.draws.iter().map(|planned| ShadedPixels { pixels: Most::new(plan, planned).pixels, exact: false });
     if total(&bounds.collect::<Vec<_>>()) <= most {
         return Ok(());
     }
@@ -208,7 +209,7 @@ mod tests {
             for (clip, cull) in clips.iter().zip([Cull::None, Cull::Back, Cull::Front]) {
                 let plan = plan(count, 48, reach, |draw| (draw.window_clip, draw.cull) = (clip.clone(), cull));
                 let rendered = render_counted(&plan, &RenderOptions::default(), &|_, _| {}).1.shaded_pixels;
-                assert_eq!(shaded(&plan), [Shaded { pixels: rendered[0], exact: true }]);
+                assert_eq!(shaded(&plan), [ShadedPixels { pixels: rendered[0], exact: true }]);
                 let most = Most::new(&plan, &plan.draws[0]);
                 assert!(most.pixels >= rendered[0], "{most:?} {rendered:?}");
                 assert_eq!(affordable(&plan, rendered[0]), Ok(()));
@@ -234,7 +235,7 @@ mod tests {
     #[test]
     fn large_plans_have_bounds() {
         let large = plan(3000, 4096, 0, |_| {});
-        let [Shaded { pixels, exact }] = shaded(&large)[..] else { panic!("one draw") };
+        let [ShadedPixels { pixels, exact }] = shaded(&large)[..] else { panic!("one draw") };
         assert!(!exact && pixels >= fragments(&large, &large.draws[0]), "{pixels}");
         assert_eq!(affordable(&large, pixels), Ok(()));
         let error = affordable(&large, pixels - 1).expect_err("too many").message;

@@ -17,13 +17,13 @@ mod tracing;
 mod unseen;
 pub mod walk;
 
-pub use counting::{DrawCounts, Shaded, affordable, count, fragments, shaded};
+pub use counting::{DrawCounts, ShadedPixels, affordable, count, fragments, shaded};
 pub use planes::{FRAGMENT_NAMES, Plane, PlaneOptions, plane_names, planes};
 pub use rows::Isa;
 use rows::Kernels;
 pub use texture_words::TextureWords;
 pub use tracing::{DrawTrace, FRAGMENTS, PixelTrace, TraceEnd, TraceError, Tracer, trace, trace_last};
-pub use unseen::{Unseen, unseen};
+pub use unseen::{EmptyDraw, unseen};
 
 use crate::frame::{Frames, Surface};
 use crate::plan::{Plan, PlannedDraw};

@@ -57,7 +57,7 @@ impl DepthStencil {
 
 /// The result of a fragment.
 #[derive(Clone, Copy, Debug)]
-pub struct Stored<L> {
+pub struct FragmentResult<L> {
     /// The new word of the surface.
     pub word: u32,
     /// The blended channels before the store, and which of them are written: the contents of an ideal surface.
@@ -77,7 +77,7 @@ impl TriangleContext<'_> {
         destination: Option<[L; 4]>,
         textures: &[Image<'_, L>],
         observer: &mut O,
-    ) -> Option<Stored<L>> {
+    ) -> Option<FragmentResult<L>> {
         let draw = self.draw;
         let mut sample = Sample::new(&self.triangle, fragment.e);
         sample.ideal = fragment.weights;
@@ -363,7 +363,7 @@ impl TriangleContext<'_> {
         memory: &DepthStencil,
         destination: Option<[L; 4]>,
         observer: &mut O,
-    ) -> Option<Stored<L>> {
+    ) -> Option<FragmentResult<L>> {
         let draw = self.draw;
         let channels = match &draw.blend {
             None => source,
@@ -392,7 +392,7 @@ impl TriangleContext<'_> {
         if O::ON && observer.wants_any(&["sto", "surface"]) {
             self.report_store(&channels, fragment.stored, word, memory, observer);
         }
-        Some(Stored { word, channels })
+        Some(FragmentResult { word, channels })
     }
 
     /// Returns the ideal's depth in words of the buffer, with a fraction.

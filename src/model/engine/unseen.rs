@@ -11,7 +11,7 @@ use crate::state::{AlphaTest, CompareFunction, Named};
 
 /// The reason why a draw stores nothing.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Unseen {
+pub struct EmptyDraw {
     /// The reason, as the end of a sentence.
     pub reason: String,
     /// Advice on what to do.
@@ -20,7 +20,7 @@ pub struct Unseen {
 
 /// Returns, for each draw of a plan, why it stores neither colour nor depth nor stencil; `None` if it may store something. A draw whose triangles
 /// cover no pixel is not noticed if looking at all of their rows would take long.
-pub fn unseen(plan: &Plan) -> Vec<Option<Unseen>> {
+pub fn unseen(plan: &Plan) -> Vec<Option<EmptyDraw>> {
     let mut left = ROWS;
     plan.draws
         .iter()
@@ -29,7 +29,7 @@ pub fn unseen(plan: &Plan) -> Vec<Option<Unseen>> {
 }
 
 /// Returns what planning has found.
-fn folded(planned: &PlannedDraw) -> Option<Unseen> {
+fn folded(planned: &PlannedDraw) -> Option<EmptyDraw> {
     let why = planned.folded.invisible?;
     if why == Invisible::NoTriangles && planned.assembly.clipping.removed > 0 {
         return Some(triangles(planned, &[]));
@@ -40,12 +40,12 @@ fn folded(planned: &PlannedDraw) -> Option<Unseen> {
         Invisible::NothingWritten => "look at `color_mask`, and at what the tests write",
         Invisible::AddsZero | Invisible::KeepsDestination => "look at `blend` and at what the program computes",
     };
-    Some(Unseen { reason: why.name().to_owned(), help })
+    Some(EmptyDraw { reason: why.name().to_owned(), help })
 }
 
 /// Returns the test that nothing passes, if it has no other effect.
-fn tests(planned: &PlannedDraw) -> Option<Unseen> {
-    let never = |test: &str, help| Some(Unseen { reason: format!("its {test} never passes"), help });
+fn tests(planned: &PlannedDraw) -> Option<EmptyDraw> {
+    let never = |test: &str, help| Some(EmptyDraw { reason: format!("its {test} never passes"), help });
     if let Some(AlphaTest { function, reference }) = planned.alpha_test {
         let help = "look at `alpha_test`: its function takes the fragment's alpha, then the reference";
         if (0..=255).all(|alpha: u8| !function.passes(alpha, reference)) {
@@ -68,7 +68,7 @@ fn tests(planned: &PlannedDraw) -> Option<Unseen> {
 }
 
 /// Returns why no triangle covers a pixel, if that is so. `left` is the number of rows that may be looked at.
-fn covered(plan: &Plan, planned: &PlannedDraw, left: &mut u64) -> Option<Unseen> {
+fn covered(plan: &Plan, planned: &PlannedDraw, left: &mut u64) -> Option<EmptyDraw> {
     if Most::new(plan, planned).rows > *left {
         return None;
     }
@@ -83,16 +83,16 @@ fn covered(plan: &Plan, planned: &PlannedDraw, left: &mut u64) -> Option<Unseen>
     }
     let rows = (0, i64::from(plan.targets[planned.target].height));
     let windows: Vec<walk::Window> = walk::windows(planned, rows).collect();
-    let mut counts = [0; Missed::ALL.len()];
+    let mut counts = [0; MissReason::ALL.len()];
     for number in 0..planned.assembly.triangles.len() {
-        counts[Missed::new(planned, number, &windows) as usize] += 1;
+        counts[MissReason::new(planned, number, &windows) as usize] += 1;
     }
     Some(triangles(planned, &counts))
 }
 
 crate::state::named! {
     /// The reason why a triangle covers no pixel.
-    enum Missed {
+    enum MissReason {
         /// Its corners lie on a line.
         Flat = "without area",
         /// It shows the side that is not drawn.
@@ -104,29 +104,29 @@ crate::state::named! {
     }
 }
 
-impl Missed {
-    fn new(planned: &PlannedDraw, number: usize, windows: &[walk::Window]) -> Missed {
+impl MissReason {
+    fn new(planned: &PlannedDraw, number: usize, windows: &[walk::Window]) -> MissReason {
         let [across, down] = [0, 1].map(|axis| planned.assembly.bounds(number, axis));
         let meets = |a: (i64, i64), b: (i64, i64)| a.0.max(b.0) < a.1.min(b.1);
         let is_triangle = planned.assembly.triangles.figure(number) == Figure::Triangle;
         match TriangleContext::clockwise_area(planned, number) {
-            0 if is_triangle => Missed::Flat,
-            area if is_triangle && TriangleContext::is_culled(planned, area) => Missed::Culled,
+            0 if is_triangle => MissReason::Flat,
+            area if is_triangle && TriangleContext::is_culled(planned, area) => MissReason::Culled,
             // A triangle between two centres has no columns or no rows of its own.
-            _ if across.0 >= across.1 || down.0 >= down.1 => Missed::Between,
+            _ if across.0 >= across.1 || down.0 >= down.1 => MissReason::Between,
             _ if !windows.iter().any(|(rows, columns)| meets(down, *rows) && meets(across, *columns)) => {
-                Missed::Outside
+                MissReason::Outside
             }
-            _ => Missed::Between,
+            _ => MissReason::Between,
         }
     }
 }
 
 /// Says what became of a draw's triangles: those that clipping removed, and the others by the reason for which they cover nothing.
-fn triangles(planned: &PlannedDraw, missed: &[usize]) -> Unseen {
+fn triangles(planned: &PlannedDraw, missed: &[usize]) -> EmptyDraw {
     let clipping = &planned.assembly.clipping;
     let clipped = format!("clipped away ({})", ClipPlane::names(clipping.planes));
-    let reasons = Missed::ALL.iter().zip(missed).map(|(missed, count)| (*count, missed.name()));
+    let reasons = MissReason::ALL.iter().zip(missed).map(|(missed, count)| (*count, missed.name()));
     let reasons: Vec<(usize, &str)> =
         [(clipping.removed, clipped.as_str())].into_iter().chain(reasons).filter(|(count, _)| *count > 0).collect();
     let help = match reasons.first() {
@@ -146,5 +146,5 @@ fn triangles(planned: &PlannedDraw, missed: &[usize]) -> Unseen {
             format!("of {all} triangles {}", parts.join(", "))
         }
     };
-    Unseen { reason, help }
+    EmptyDraw { reason, help }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::setup::centres;
 use super::stroke::{self, Figure};
-pub(crate) use super::triangles::{Assembled, Triangles};
+pub(crate) use super::triangles::{IndexedTriangle, Triangles};
 use super::{LARGEST_W, SMALLEST_W, modes, project};
 use crate::number::convert::{snap, vertex_color};
 use crate::state::{Draw, Lines, Positions, TriangleVertices, Vertex, VertexColor, Vertices, Viewport};
@@ -262,8 +262,8 @@ fn clip(vertices: &mut Vertices, triangles: &Triangles, viewport: &Viewport) -> 
             for i in pieces {
                 clipping.pieces.push(Piece { number: kept.len(), of, planes });
                 kept.push(match triangle.figure {
-                    Figure::Line => Assembled::line([start, start + 1], triangle.provoking),
-                    _ => Assembled { vertices: [start, start + i, start + i + 1], ..triangle },
+                    Figure::Line => IndexedTriangle::line([start, start + 1], triangle.provoking),
+                    _ => IndexedTriangle { vertices: [start, start + i, start + i + 1], ..triangle },
                 });
             }
             blamed.resize(blamed.len() + polygon.len(), outside as usize);

@@ -3,7 +3,7 @@
 use super::project;
 use super::setup::{clockwise_area, is_front};
 use super::stroke::Figure;
-use super::triangles::{Assembled, Triangles};
+use super::triangles::{IndexedTriangle, Triangles};
 use crate::number::convert::snap;
 use crate::state::{Cull, Draw, PolygonMode, PolygonModes, Positions, Topology};
 
@@ -27,8 +27,8 @@ pub(super) fn figures(draw: &Draw, triangles: Triangles) -> Triangles {
                         continue;
                     }
                     figures.push(match mode {
-                        PolygonMode::Line => Assembled::line([from, to], triangle.provoking),
-                        _ => Assembled::point(from, triangle.provoking),
+                        PolygonMode::Line => IndexedTriangle::line([from, to], triangle.provoking),
+                        _ => IndexedTriangle::point(from, triangle.provoking),
                     });
                 }
             }
@@ -38,7 +38,7 @@ pub(super) fn figures(draw: &Draw, triangles: Triangles) -> Triangles {
 }
 
 /// Returns the mode of the side that a triangle shows, or `None` if nothing of it is drawn.
-fn mode(draw: &Draw, triangle: &Assembled) -> Option<PolygonMode> {
+fn mode(draw: &Draw, triangle: &IndexedTriangle) -> Option<PolygonMode> {
     debug_assert_eq!(triangle.figure, Figure::Triangle);
     let Some(area) = area(draw, triangle.vertices) else {
         // It is refused, whatever is drawn of it.

@@ -7,7 +7,7 @@ use crate::state::{ProvokingVertex, Topology};
 
 /// A triangle of a draw. The order of its vertices matters, because INT-2 gives the second one the remainder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Assembled {
+pub struct IndexedTriangle {
     /// What it is. The vertices of a line from A to B are A, A and B; those of a point are all the same.
     pub figure: Figure,
     /// Indices into [`Assembly::vertices`](super::assemble::Assembly::vertices).
@@ -41,15 +41,15 @@ enum Provoking {
     Each(Arc<[u32]>),
 }
 
-impl Assembled {
+impl IndexedTriangle {
     /// Returns the line between two vertices.
-    pub(super) fn line([from, to]: [u32; 2], provoking: u32) -> Assembled {
-        Assembled { figure: Figure::Line, vertices: [from, from, to], provoking }
+    pub(super) fn line([from, to]: [u32; 2], provoking: u32) -> IndexedTriangle {
+        IndexedTriangle { figure: Figure::Line, vertices: [from, from, to], provoking }
     }
 
     /// Returns the point at a vertex.
-    pub(super) fn point(vertex: u32, provoking: u32) -> Assembled {
-        Assembled { figure: Figure::Point, vertices: [vertex; 3], provoking }
+    pub(super) fn point(vertex: u32, provoking: u32) -> IndexedTriangle {
+        IndexedTriangle { figure: Figure::Point, vertices: [vertex; 3], provoking }
     }
 }
 
@@ -57,12 +57,13 @@ impl Triangles {
     /// Splits primitives into triangles. Indices that do not complete a primitive are ignored.
     pub fn split(indices: &Arc<[u32]>, topology: Topology, provoking: ProvokingVertex) -> Triangles {
         let first = provoking == ProvokingVertex::First;
-        let triangle = |a: usize, b: usize, c: usize, provoking: usize| Assembled {
+        let triangle = |a: usize, b: usize, c: usize, provoking: usize| IndexedTriangle {
             figure: Figure::Triangle,
             vertices: [indices[a], indices[b], indices[c]],
             provoking: indices[provoking],
         };
-        let line = |a: usize, b: usize| Assembled::line([indices[a], indices[b]], indices[if first { a } else { b }]);
+        let line =
+            |a: usize, b: usize| IndexedTriangle::line([indices[a], indices[b]], indices[if first { a } else { b }]);
         let count = indices.len();
         match topology {
             Topology::Triangles => Triangles {
@@ -92,7 +93,7 @@ impl Triangles {
                 })
                 .collect(),
             Topology::Polygon => (1..count.saturating_sub(1)).map(|i| triangle(0, i, i + 1, 0)).collect(),
-            Topology::Points => indices.iter().map(|vertex| Assembled::point(*vertex, *vertex)).collect(),
+            Topology::Points => indices.iter().map(|vertex| IndexedTriangle::point(*vertex, *vertex)).collect(),
             Topology::Lines => (0..count / 2).map(|i| line(2 * i, 2 * i + 1)).collect(),
             Topology::LineStrip => (1..count).map(|i| line(i - 1, i)).collect(),
             Topology::LineLoop => (1..count + usize::from(count > 1)).map(|i| line(i - 1, i % count)).collect(),
@@ -146,18 +147,22 @@ impl Triangles {
     ///
     /// # Panics
     /// Panics if there is no such triangle.
-    pub fn at(&self, number: usize) -> Assembled {
-        Assembled { figure: self.figure(number), vertices: self.vertices(number), provoking: self.provoking(number) }
+    pub fn at(&self, number: usize) -> IndexedTriangle {
+        IndexedTriangle {
+            figure: self.figure(number),
+            vertices: self.vertices(number),
+            provoking: self.provoking(number),
+        }
     }
 
     /// Returns an iterator over the triangles in order.
-    pub fn iter(&self) -> impl ExactSizeIterator<Item = Assembled> + '_ {
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = IndexedTriangle> + '_ {
         (0..self.len()).map(|number| self.at(number))
     }
 }
 
-impl FromIterator<Assembled> for Triangles {
-    fn from_iter<I: IntoIterator<Item = Assembled>>(triangles: I) -> Self {
+impl FromIterator<IndexedTriangle> for Triangles {
+    fn from_iter<I: IntoIterator<Item = IndexedTriangle>>(triangles: I) -> Self {
         let triangles = triangles.into_iter();
         let count = triangles.size_hint().0;
         let (mut indices, mut provoking) = (Vec::with_capacity(3 * count), Vec::with_capacity(count));

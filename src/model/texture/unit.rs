@@ -16,7 +16,7 @@ use crate::state::{Filter, Level, TextureKind};
 use crate::trace::{Decision, Observer, Rule, Work};
 
 /// The filter and levels that were chosen by the lod, or the only possible ones.
-struct Chosen<L: Lane> {
+struct LevelChoice<L: Lane> {
     choice: Choice,
     /// Weight of the second level.
     weight: L::Weight,
@@ -41,7 +41,7 @@ pub(crate) fn sample<L: Lane, O: Observer>(
     } else {
         Some(face as usize)
     };
-    let Chosen { choice, weight } = choose::<L, O>(unit, place, observer);
+    let LevelChoice { choice, weight } = choose::<L, O>(unit, place, observer);
     let real = if wants_ideal { place.real(Some(face)).st } else { [0.0; 2] };
     if O::MEASURES {
         let texels = |of: &dyn Fn(&Level) -> [i64; 2]| {
@@ -84,8 +84,12 @@ pub(crate) fn sample<L: Lane, O: Observer>(
 
 /// TEX-9 to TEX-11: chooses filter and levels.
 #[inline(always)]
-fn choose<L: Lane, O: Observer>(unit: &PlannedUnit, place: &impl SampleCoordinates, observer: &mut O) -> Chosen<L> {
-    let whole = |choice| Chosen { choice, weight: L::weight(0, || 0.0) };
+fn choose<L: Lane, O: Observer>(
+    unit: &PlannedUnit,
+    place: &impl SampleCoordinates,
+    observer: &mut O,
+) -> LevelChoice<L> {
+    let whole = |choice| LevelChoice { choice, weight: L::weight(0, || 0.0) };
     if !unit.needs_lod() {
         return whole(Choice { filter: unit.state.mag_filter, level: 0, next: None });
     }
@@ -108,7 +112,7 @@ fn choose<L: Lane, O: Observer>(unit: &PlannedUnit, place: &impl SampleCoordinat
     if O::ON {
         report.lod_weight::<L, O>(lod, weight, observer);
     }
-    Chosen { choice, weight }
+    LevelChoice { choice, weight }
 }
 
 /// VOL-1: returns the layer of a volume, or `None` if it is in the border beyond the layers.

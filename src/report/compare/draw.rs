@@ -4,7 +4,7 @@
 use super::meter::Counts;
 use super::*;
 use ninebit::engine::context::TriangleContext;
-use ninebit::engine::pixel::{DepthStencil, Fragment, Stored};
+use ninebit::engine::pixel::{DepthStencil, Fragment, FragmentResult};
 use ninebit::engine::{TextureWords, cleared_colors};
 use ninebit::number::Lane;
 use ninebit::plan::{Plan, PlannedDraw};
@@ -68,7 +68,7 @@ impl<L> Band<'_, L> {
         destination: Option<[S; 4]>,
         images: &[Image<'_, S>],
         observer: &mut impl Observer,
-    ) -> Option<Stored<S>> {
+    ) -> Option<FragmentResult<S>> {
         let at = self.at(i, j);
         let mut depth = DepthStencil::new(self.depth.get(at).copied().unwrap_or(0));
         let e = context.triangle.edges(i, j);

@@ -1,7 +1,7 @@
 //! Cost of a draw, predicted from its plan.
 
 use ninebit::combiner::general::{BLUE, PlannedPortion};
-use ninebit::engine::Shaded;
+use ninebit::engine::ShadedPixels;
 use ninebit::plan::PlannedDraw;
 use ninebit::state::{DotRounding, Filter, LerpRounding, MipFilter, Named, Policies, ShaderOperation, SumRounding};
 use ninebit::texture::dot::{DOT_OPERATIONS, REFLECTION_OPERATIONS};
@@ -47,7 +47,7 @@ pub struct Cost {
 }
 
 impl Cost {
-    pub(super) fn from_draw(planned: &PlannedDraw, policies: &Policies, shaded: Shaded) -> Cost {
+    pub(super) fn from_draw(planned: &PlannedDraw, policies: &Policies, shaded: ShadedPixels) -> Cost {
         let fragment = FragmentCost { shaded: for_each(planned, policies), stored: stored(planned) };
         let seen = planned.folded.invisible.is_none();
         let if_seen = |count: usize| if seen { count as u64 } else { 0 };

@@ -11,7 +11,7 @@ mod shader;
 pub use cost::{Cost, FragmentCost};
 pub use report::{explanation_json, explanation_text};
 
-use ninebit::engine::{self, Unseen};
+use ninebit::engine::{self, EmptyDraw};
 use ninebit::plan::{Plan, PlanOptions, PlannedDraw};
 use ninebit::raster::project::ClipPlane;
 use ninebit::rop::{self, surface};
@@ -260,7 +260,7 @@ fn comparison(function: CompareFunction) -> &'static str {
 }
 
 /// Returns the state that is not in the plan, and why.
-fn dropped(scene: &Scene, draw: &Draw, planned: &PlannedDraw, unseen: Option<Unseen>) -> Vec<String> {
+fn dropped(scene: &Scene, draw: &Draw, planned: &PlannedDraw, unseen: Option<EmptyDraw>) -> Vec<String> {
     let mut lines: Vec<String> =
         unseen.map(|unseen| format!("the whole draw: {}", unseen.reason)).into_iter().collect();
     if planned.folded.invisible.is_some() {

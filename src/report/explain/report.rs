@@ -54,7 +54,7 @@ fn write(out: &mut String, plan: &Plan, draws: &[DrawExplanation], counted: Opti
         write_cost(out, draw, counted.map(|all| &all[number]))?;
     }
     let shaded = ShadingWork::from_draws(
-        draws.iter().map(|draw| engine::Shaded { pixels: draw.cost.fragments, exact: draw.cost.exact }),
+        draws.iter().map(|draw| engine::ShadedPixels { pixels: draw.cost.fragments, exact: draw.cost.exact }),
     );
     writeln!(out, "\nshaded pixels: {}", shaded.text())?;
     writeln!(out, "\nall draws{:>32}{:>16}", "after pruning", "as asked")?;

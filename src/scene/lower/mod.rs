@@ -46,7 +46,7 @@ use super::wording::shorten;
 use crate::truth::Truth;
 pub(super) use geometry::moved_back;
 use ninebit::diagnostic::File;
-use ninebit::engine::{self, Unseen};
+use ninebit::engine::{self, EmptyDraw};
 use ninebit::plan::{Invisible, Plan, PlanOptions};
 use ninebit::state::*;
 use ninebit_program::{finding, warning};
@@ -161,7 +161,7 @@ fn warn_unseen(reader: &mut Reader<'_>, plan: &Plan, spans: &[DrawSpans]) {
     for ((planned, spans), unseen) in plan.draws().iter().zip(spans).zip(engine::unseen(plan)) {
         // A pass that adds light adds none where a lamp lies on the other side; another scene of its family may differ.
         let adds_nothing = planned.folded.invisible == Some(Invisible::AddsZero);
-        if let Some(Unseen { reason, help }) = unseen.filter(|_| !adds_nothing) {
+        if let Some(EmptyDraw { reason, help }) = unseen.filter(|_| !adds_nothing) {
             let message = format!("draw `{}` stores no pixel: {reason}", shorten(&planned.name));
             reader.push(warning("NB0919", spans.draw.clone(), message, "nothing of it is seen", help));
         }

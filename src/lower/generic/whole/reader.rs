@@ -5,7 +5,7 @@ use ninebit::raster::binary::Binary;
 use ninebit::state::{CompareFunction, ShaderStage, TextureFormat, TextureKind, TextureUnit};
 use ninebit::texture::planned::PlannedUnit;
 
-use crate::binary::Called;
+use crate::binary::Interpolant;
 use crate::code::{EXPONENT, Range};
 use crate::coordinates::Facing;
 use crate::generic::pieces::Reader;
@@ -34,8 +34,8 @@ impl<'a> Reader<'a> {
     }
 
     /// Returns a binary number.
-    pub(super) fn binary(&self, name: &'static str) -> Called<'a> {
-        Called::local(self.code, name)
+    pub(super) fn binary(&self, name: &'static str) -> Interpolant<'a> {
+        Interpolant::local(self.code, name)
     }
 
     /// Returns the truth of a flag.
@@ -58,8 +58,8 @@ impl<'a> Reader<'a> {
     }
 
     /// Returns the number of a pattern.
-    pub(super) fn number_of(&self, pattern: Number<'a>) -> Called<'a> {
-        Called::from_line(self.code, crate::binary::call(self.code, Helper::Split, &[pattern.operand()]))
+    pub(super) fn number_of(&self, pattern: Number<'a>) -> Interpolant<'a> {
+        Interpolant::from_line(self.code, crate::binary::call(self.code, Helper::Split, &[pattern.operand()]))
     }
 
     /// Returns a number whose mantissa is wide.
@@ -74,7 +74,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Returns a result that is a binary number.
-    pub(super) fn result(&self, number: Called<'a>) -> Number<'a> {
+    pub(super) fn result(&self, number: Interpolant<'a>) -> Number<'a> {
         Number::new(self.code, number.operand(self.code))
     }
 

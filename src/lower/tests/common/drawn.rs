@@ -8,7 +8,7 @@ use ninebit::engine::{TextureWords, cleared, trace};
 use ninebit::frame::Frames;
 use ninebit::plan::Plan;
 use ninebit::state::Scene;
-use ninebit_lower::code::{Given, Test, run, value_of};
+use ninebit_lower::code::{InputSource, Test, run, value_of};
 use ninebit_lower::{Draw, Field, Function, Input, Options, Result, Setup};
 
 /// The functions of a scene's draws.
@@ -28,7 +28,7 @@ struct At<'g> {
     memories: &'g [Cow<'g, [u32]>; 4],
 }
 
-impl Given for At<'_> {
+impl InputSource for At<'_> {
     fn input(&mut self, input: Input) -> i64 {
         match input {
             Input::X => self.x,

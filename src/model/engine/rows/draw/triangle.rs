@@ -8,7 +8,7 @@ use crate::engine::rows::interpolate::coordinates::Coordinates;
 use crate::engine::rows::interpolate::estimates::Estimates;
 use crate::engine::rows::interpolate::fog::factors;
 use crate::engine::rows::interpolate::sprites::Sprite;
-use crate::engine::rows::interpolate::{Weighted, colors, numbers};
+use crate::engine::rows::interpolate::{LaneWeights, colors, numbers};
 use crate::engine::rows::shading::compiled::CompiledDraw;
 use crate::raster::fog::FogPlane;
 use crate::raster::stroke::Figure;
@@ -107,7 +107,7 @@ pub(crate) fn interpolate<const FMA: bool>(
         return;
     }
     let b = if *is_estimated { &estimates.pixels.b } else { &pixels.b };
-    let weights = Weighted::new(b, all.clone(), !compiled.takes_quads);
+    let weights = LaneWeights::new(b, all.clone(), !compiled.takes_quads);
     for ((sampler, coordinates), place) in compiled.samplers.iter().zip(&*coordinates).zip(places) {
         if sampler.interpolates() {
             let own = if *is_estimated { &mut estimates.place } else { &mut *place };

@@ -2,7 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "doubles hold every number exactly")]
 
 use super::depths::word;
-use super::{Weighted, quotient};
+use super::{LaneWeights, quotient};
 use crate::engine::rows::lanes::{floor_of_quotient, larger, limited, smaller};
 use crate::engine::rows::sampling::facing::Facing;
 use crate::engine::rows::sampling::place::{FARTHEST, Place};
@@ -57,7 +57,7 @@ impl Coordinates {
     pub(crate) fn compute_places(
         &self,
         sampler: &Sampler,
-        weights: Weighted<'_>,
+        weights: LaneWeights<'_>,
         lanes: Range<usize>,
         place: &mut Place,
     ) {
@@ -91,7 +91,13 @@ impl Coordinates {
 
     /// Computes the layers of lanes, or what depths are compared with, if the sampler has either.
     #[inline(always)]
-    pub(crate) fn place_third(&self, sampler: &Sampler, weights: Weighted<'_>, lanes: Range<usize>, place: &mut Place) {
+    pub(crate) fn place_third(
+        &self,
+        sampler: &Sampler,
+        weights: LaneWeights<'_>,
+        lanes: Range<usize>,
+        place: &mut Place,
+    ) {
         match &sampler.third {
             Some(Third::Layer(layers, axis)) => {
                 let scale = 256.0 * f64::from(*layers);
@@ -132,7 +138,7 @@ impl Coordinates {
 
     /// INT-4: floors of linear functions.
     #[inline(always)]
-    fn on_plane(&self, sampler: &Sampler, weights: Weighted<'_>, lanes: Range<usize>, place: &mut Place) {
+    fn on_plane(&self, sampler: &Sampler, weights: LaneWeights<'_>, lanes: Range<usize>, place: &mut Place) {
         let bias = sampler.bias();
         for axis in 0..2 {
             let scale = 256.0 * f64::from(sampler.sides[axis]);
@@ -143,7 +149,7 @@ impl Coordinates {
 
     /// TEX-15: floors of quotients of two linear functions.
     #[inline(always)]
-    fn divided(&self, sampler: &Sampler, weights: Weighted<'_>, lanes: Range<usize>, place: &mut Place) {
+    fn divided(&self, sampler: &Sampler, weights: LaneWeights<'_>, lanes: Range<usize>, place: &mut Place) {
         let bias = sampler.bias();
         for axis in 0..2 {
             let scale = 256.0 * f64::from(sampler.sides[axis]);
@@ -156,7 +162,7 @@ impl Coordinates {
 
     /// TEX-12: the face of each lane, and the floors of where it samples on it.
     #[inline(always)]
-    fn on_faces(&self, sampler: &Sampler, weights: Weighted<'_>, lanes: Range<usize>, place: &mut Place) {
+    fn on_faces(&self, sampler: &Sampler, weights: LaneWeights<'_>, lanes: Range<usize>, place: &mut Place) {
         let (bias, middle) = (sampler.bias(), 128.0 * f64::from(sampler.sides[0]));
         let [x, y, z] = self.numbers;
         let Place { at: [u, v], images, .. } = place;
@@ -176,7 +182,7 @@ impl Coordinates {
 
     /// Keeps s, t and q, or a direction, for quads.
     #[inline(always)]
-    fn components(&self, weights: Weighted<'_>, lanes: Range<usize>, place: &mut Place) {
+    fn components(&self, weights: LaneWeights<'_>, lanes: Range<usize>, place: &mut Place) {
         for (number, out) in self.numbers.iter().zip(&mut place.direction) {
             weights.each(number, &mut out[lanes.clone()], |f| f);
         }

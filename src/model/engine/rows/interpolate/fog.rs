@@ -1,7 +1,7 @@
 //! NUM-6, FOG-2 and FOG-4 on rows.
 #![allow(clippy::float_arithmetic, reason = "doubles hold every number exactly, and a sum's rounding error is known")]
 
-use super::Weighted;
+use super::LaneWeights;
 use crate::engine::rows::lanes::{floor_of_sum, floor_within};
 use crate::number::convert::factor;
 use crate::raster::fog::{CENTRE, FogPlane, TABLE_END, exponential};
@@ -25,7 +25,7 @@ fn bytes(mode: FogMode) -> Bytes {
 
 /// Computes the factors of lanes.
 #[inline(always)]
-pub(crate) fn factors(fog: &FogPlane<f64>, weights: Weighted<'_>, out: &mut [i16]) {
+pub(crate) fn factors(fog: &FogPlane<f64>, weights: LaneWeights<'_>, out: &mut [i16]) {
     match fog {
         FogPlane::NotFinite(factor) => out.fill((*factor).into()),
         FogPlane::Factor(number) => weights.each(number, out, |f| factor(floor_within(4096.0 * f, 0.0, 4096.0)) as i16),

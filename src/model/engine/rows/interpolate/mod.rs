@@ -16,29 +16,33 @@ use std::ops::Range;
 
 /// The weights b_0 and b_2 of some lanes.
 #[derive(Clone, Copy)]
-pub(crate) struct Weighted<'a> {
+pub(crate) struct LaneWeights<'a> {
     first: &'a [f64],
     third: &'a [f64],
     /// Whether lanes whose pixel the triangle does not cover do not count.
     are_covered: bool,
 }
 
-impl<'a> Weighted<'a> {
+impl<'a> LaneWeights<'a> {
     #[inline(always)]
-    pub(super) fn new([first, third]: &'a [PerLane<f64>; 2], lanes: Range<usize>, are_covered: bool) -> Weighted<'a> {
-        Weighted { first: &first[lanes.clone()], third: &third[lanes], are_covered }
+    pub(super) fn new(
+        [first, third]: &'a [PerLane<f64>; 2],
+        lanes: Range<usize>,
+        are_covered: bool,
+    ) -> LaneWeights<'a> {
+        LaneWeights { first: &first[lanes.clone()], third: &third[lanes], are_covered }
     }
 
     /// Returns some of the lanes.
     #[inline(always)]
-    fn part(self, lanes: Range<usize>) -> Weighted<'a> {
-        Weighted { first: &self.first[lanes.clone()], third: &self.third[lanes], ..self }
+    fn part(self, lanes: Range<usize>) -> LaneWeights<'a> {
+        LaneWeights { first: &self.first[lanes.clone()], third: &self.third[lanes], ..self }
     }
 
     /// Returns the same lanes, so many that compilers see it.
     #[inline(always)]
-    fn lanes(self, count: usize) -> Weighted<'a> {
-        Weighted { first: &self.first[..count], third: &self.third[..count], ..self }
+    fn lanes(self, count: usize) -> LaneWeights<'a> {
+        LaneWeights { first: &self.first[..count], third: &self.third[..count], ..self }
     }
 
     /// Returns a number in a lane.

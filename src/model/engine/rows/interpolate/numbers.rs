@@ -1,7 +1,7 @@
 //! TSH-4, TSH-9 and TSH-10 on rows: numbers that a texture shader takes as numbers.
 #![allow(clippy::float_arithmetic, reason = "doubles hold every number exactly")]
 
-use super::Weighted;
+use super::LaneWeights;
 use crate::engine::rows::lanes::floor_within;
 use crate::number::convert::factor;
 use crate::raster::weights::Linear;
@@ -38,7 +38,7 @@ impl Purpose {
 
 /// Computes a number in each lane.
 #[inline(always)]
-pub(crate) fn numbers(purpose: Purpose, number: &Linear<f64>, weights: Weighted<'_>, out: &mut [f32]) {
+pub(crate) fn numbers(purpose: Purpose, number: &Linear<f64>, weights: LaneWeights<'_>, out: &mut [f32]) {
     match purpose {
         Purpose::Float => weights.each(number, out, |f| Purpose::Float.take(f)),
         Purpose::Sign => weights.each(number, out, |f| Purpose::Sign.take(f)),

@@ -2,7 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "whole numbers that doubles hold, times powers of two")]
 
 use super::pairs::PairsOfQuad;
-use super::table::{Placed, Table};
+use super::table::{LevelPosition, Table};
 use crate::engine::rows::lanes::{BLOCK, PerLane, limited};
 use crate::state::{Filter, MipFilter};
 use crate::texture::lod;
@@ -51,7 +51,7 @@ impl MipFetches {
     ) {
         let Placing { lods, levels, .. } = placing;
         let ranges = choose(unit, lods, levels, &mut self.weights[..count]);
-        let (filters, most) = (Taken::of_unit(unit), unit.largest_shifts());
+        let (filters, most) = (FilterBits::of_unit(unit), unit.largest_shifts());
         // The second level is read only where two are mixed.
         let count_of_levels = if unit.state.mip_filter == MipFilter::Linear { 2 } else { 1 };
         for (which, [low, high]) in ranges.into_iter().enumerate().take(count_of_levels) {
@@ -111,22 +111,22 @@ fn choose(
 
 /// How a filter changes a coordinate: what it subtracts, and the mask of the bits that it keeps.
 #[derive(Clone, Copy, PartialEq, Eq)]
-struct Taken {
+struct FilterBits {
     less: i32,
     kept: i32,
 }
 
-impl Taken {
+impl FilterBits {
     /// Returns what the magnification and the minification filter of a unit change.
-    fn of_unit(unit: &PlannedUnit) -> [Taken; 2] {
-        [Taken::by(unit.state.mag_filter), Taken::by(unit.state.min_filter)]
+    fn of_unit(unit: &PlannedUnit) -> [FilterBits; 2] {
+        [FilterBits::by(unit.state.mag_filter), FilterBits::by(unit.state.min_filter)]
     }
 
-    fn by(filter: Filter) -> Taken {
+    fn by(filter: Filter) -> FilterBits {
         match filter {
-            Filter::Linear => Taken { less: 128, kept: -1 },
+            Filter::Linear => FilterBits { less: 128, kept: -1 },
             // Without a fraction, so that nothing is mixed.
-            Filter::Nearest => Taken { less: 0, kept: !255 },
+            Filter::Nearest => FilterBits { less: 0, kept: !255 },
         }
     }
 }
@@ -139,7 +139,7 @@ const MAX_LEVELS: usize = 16;
 #[inline(always)]
 fn scattered(
     (unit, table): (&PlannedUnit, &Table),
-    filters: [Taken; 2],
+    filters: [FilterBits; 2],
     (lods, levels): (&[i32], &[i32]),
     u: &mut [i32],
     v: &mut [i32],
@@ -160,7 +160,7 @@ fn scattered(
     }
     for n in 0..lanes {
         let axes = [columns.shifted(width, levels[n].min(most[0])), rows.shifted(height, levels[n].min(most[1]))];
-        let placed = Placed { axes, first: entries[n] as i32, pitch };
+        let placed = LevelPosition { axes, first: entries[n] as i32, pitch };
         (u[n], v[n], entries[n]) = entry(&placed, filters, lods[n], [u[n], v[n]]);
     }
 }
@@ -168,9 +168,9 @@ fn scattered(
 /// Returns the coordinates for the weights of a lane on a level, and the entry: that of the texel, or of the upper left texel of the
 /// footprint. Coordinates are not reduced to the period yet.
 #[inline(always)]
-fn entry(placed: &Placed, [mag, min]: [Taken; 2], lod: i32, [u, v]: [i32; 2]) -> (i32, i32, u32) {
+fn entry(placed: &LevelPosition, [mag, min]: [FilterBits; 2], lod: i32, [u, v]: [i32; 2]) -> (i32, i32, u32) {
     let [columns, rows] = &placed.axes;
-    let Taken { less, kept } = if lod <= 0 { mag } else { min };
+    let FilterBits { less, kept } = if lod <= 0 { mag } else { min };
     let (u, v) = ((u - less) & kept, (v - less) & kept);
     let (u, v) = (u.max(columns.low).min(columns.high), v.max(rows.low).min(rows.high));
     let entry = rows.entry(v).wrapping_mul(placed.pitch).wrapping_add(columns.entry(u)).wrapping_add(placed.first);
@@ -180,8 +180,15 @@ fn entry(placed: &Placed, [mag, min]: [Taken; 2], lod: i32, [u, v]: [i32; 2]) ->
 /// Computes the entry of each lane on a level, for the magnification or the minification filter: that of the texel, or of the upper left
 /// texel of the footprint. Coordinates become those for the weights.
 #[inline(always)]
-fn places(placed: &Placed, filters: [Taken; 2], lods: &[i32], u: &mut [i32], v: &mut [i32], entries: &mut [u32]) {
-    let Placed { axes: [columns, rows], first, pitch } = *placed;
+fn places(
+    placed: &LevelPosition,
+    filters: [FilterBits; 2],
+    lods: &[i32],
+    u: &mut [i32],
+    v: &mut [i32],
+    entries: &mut [u32],
+) {
+    let LevelPosition { axes: [columns, rows], first, pitch } = *placed;
     let lanes = lods.len();
     let (u, v, entries) = (&mut u[..lanes], &mut v[..lanes], &mut entries[..lanes]);
     for n in 0..lanes {

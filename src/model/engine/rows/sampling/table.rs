@@ -172,12 +172,12 @@ pub(crate) struct Table {
     /// Contents of the channels. 128 is added to signed ones.
     pub(crate) channels: [Channel; 4],
     /// Positions of the levels, if the unit needs a level of detail.
-    pub(crate) levels: Vec<Placed>,
+    pub(crate) levels: Vec<LevelPosition>,
 }
 
 /// The position of a level in a table.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Placed {
+pub(crate) struct LevelPosition {
     pub(crate) axes: [Axis; 2],
     /// Index of its first entry.
     pub(crate) first: i32,
@@ -301,7 +301,7 @@ impl Table {
             for (level, axes) in unit.levels.iter().zip(levels) {
                 let [columns, rows] = axes;
                 if n == 0 && mixes {
-                    placed.push(Placed { axes: *axes, first: (all.len() - start) as i32, pitch: wide as i32 });
+                    placed.push(LevelPosition { axes: *axes, first: (all.len() - start) as i32, pitch: wide as i32 });
                 }
                 let slice = Slice { unit, level, image: *number };
                 let column = |x: i32| slice.column(i64::from(x + columns.first));
