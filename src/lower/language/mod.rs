@@ -17,6 +17,7 @@ pub(crate) use whole::shared;
 use std::collections::BTreeSet;
 
 use ninebit::raster::fog;
+use ninebit::raster::weights::FIRST_RECIPROCALS;
 use ninebit::state::{CompareFunction, named};
 use ninebit::texture::dot;
 
@@ -179,9 +180,10 @@ pub(crate) enum Call {
 }
 
 /// Tables, with their names in printed text.
-pub(crate) const TABLES: [(&str, Table); 7] = {
+pub(crate) const TABLES: [(&str, Table); 8] = {
     let [a, b, c, d, e] = &dot::ROOT_BYTES;
     [
+        ("reciprocals", Table(&FIRST_RECIPROCALS)),
         ("exponential", Table(&fog::EXPONENTIAL)),
         ("squared", Table(&fog::SQUARED)),
         ("root_low", Table(a)),

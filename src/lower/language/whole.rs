@@ -89,12 +89,14 @@ fn calls<'l, L: Iterator<Item = &'l Line>>(
 ) -> String {
     let mut out = String::new();
     let helpers: BTreeSet<Helper> = lines().filter_map(|line| line.operation.helper()).collect();
-    let tables: BTreeSet<Table> = lines().filter_map(|line| line.operation.table()).collect();
+    let helpers = Helper::ALL.into_iter().filter(|helper| helpers.contains(helper));
+    let helpers: Vec<_> = helpers.map(|helper| (helper, helper.lines())).collect();
+    let mut tables: BTreeSet<Table> = lines().filter_map(|line| line.operation.table()).collect();
+    tables.extend(helpers.iter().flat_map(|(_, (lines, _))| lines).filter_map(|line| line.operation.table()));
     for (name, table) in TABLES.into_iter().filter(|(_, table)| tables.contains(table)) {
         out.push_str(&whole.table(name, table));
     }
-    for helper in Helper::ALL.into_iter().filter(|helper| helpers.contains(helper)) {
-        let (lines, result) = helper.lines();
+    for (helper, (lines, result)) in helpers {
         let body = Body::within(LONGEST, syntax, &lines, (&[result], &[]));
         out.push_str(&whole.helper(helper));
         out.push_str(&body.printed());

@@ -65,13 +65,15 @@ impl Number for f64 {
         let bits = self.to_bits();
         let fraction = bits & !(!0 << 52);
         let m = f64::from_bits(fraction | ONE);
-        let middle = f64::from_bits(fraction & !0 << 45 | 1 << 44 | ONE);
-        let first = (128.0 / middle + 0.5).trunc() / 128.0;
+        // Quotients of 7 bits and a half, at least 2^-10 from a whole number: binary32 suffices, and takes less time.
+        let middle = f64::from_bits(fraction & !0 << 45 | 1 << 44 | ONE) as f32;
+        let first = f64::from((128.0 / middle + 0.5).trunc() * (1.0 / 128.0));
         let near = f64::from_bits(fraction & !0 << 38 | ONE);
-        let second = cut_at::<15>((2.0 - first * near) * first + HALF);
+        // At least 1/2, so that 14 bits of fraction are left.
+        let second = f64::from_bits(((2.0 - first * near) * first + HALF).to_bits() & !0 << 38);
         let third = cut_at::<29>(cut_at::<30>(2.0 - second * m) * second);
         let scale = (BIAS << 53).wrapping_sub(bits & EXPONENT) | (bits & 1 << 63);
-        f64::from_bits(scale) * if fraction == 0 { 1.0 } else { third }
+        f64::from_bits(scale) * third
     }
 
     #[inline(always)]

@@ -13,7 +13,6 @@
 
 use super::binary::Binary;
 use crate::number::{Choice, Integer, LEAST_TOP};
-use crate::state::CompareFunction;
 
 /// A number of the interpolator. Products of two are exact, and nothing is rounded but where a method says so.
 pub trait Number: Copy {
@@ -199,6 +198,18 @@ fn rounded_up<I: Integer>(n: Binary<I>) -> Binary<I> {
     Binary { mantissa, exponent: I::new(LEAST_TOP).or(n.mantissa.is_zero(), n.exponent + dropped - up) }
 }
 
+/// The reciprocal of the middle of all mantissas with the same seven bits of fraction, in units of 2^-7, to nearest.
+pub const FIRST_RECIPROCALS: [u8; 128] = {
+    let mut table = [0; 128];
+    let mut index = 0;
+    while index < 128 {
+        let middle = 2 * index as u32 + 257;
+        table[index] = (((1 << 16) + middle) / (2 * middle)) as u8;
+        index += 1;
+    }
+    table
+};
+
 /// A term of a sum.
 #[derive(Clone, Copy)]
 struct Term<I: Integer> {
@@ -316,20 +327,17 @@ impl<I: Integer> Number for Binary<I> {
     fn reciprocal(self) -> Binary<I> {
         let sum = self.mantissa.magnitude();
         let length = sum.bits() - I::new(1);
-        let is_power = sum.compared(CompareFunction::Equal, I::new(1).up(length));
-        // The sum in [1, 2), in units of 2^-30, and the middle of all that share seven bits of fraction with it, in units of 2^-8.
+        // The sum in [1, 2), in units of 2^-30.
         let m = sum.up(I::new(30) - length).within(1 << 30, (1 << 31) - 1);
-        let middle = I::new(2) * m.down(I::new(23)).masked(127) + I::new(257);
-        let first = (I::new(1 << 16) + middle).quotient(I::new(2) * middle).within(64, 128);
+        let first = m.down(I::new(23)).masked(127).entry(&FIRST_RECIPROCALS);
         let second = ((I::new(1 << 22) - first * m.down(I::new(16))) * first + I::new(1 << 12)).down(I::new(13));
         let second = second.within(1 << 14, 1 << 15);
         let factor = (I::new(1 << 46) - second * m).down(I::new(15)).within(0, 1 << 31);
         let third = (second * factor).down(I::new(16)).within(0, 1 << 29);
-        // It has 29 bits, but 28 where it is hardly below 1/2 and 30 for a power of two.
+        // It has 29 bits, but 28 where it is hardly below 1/2, and 30 where it is 1.
         let short = I::new(1).or(third.is_below(I::new(1 << 28)), I::new(0));
-        let mantissa = I::new(1 << 28).or(is_power, third.up(short).within(1 << 28, 1 << 29));
-        let scale = length + I::new(28).or(is_power, I::new(29) + short);
-        Binary { mantissa: mantissa.negated(self.mantissa.is_negative()), exponent: I::new(0) - self.exponent - scale }
+        let mantissa = third.up(short).within(1 << 28, 1 << 29).negated(self.mantissa.is_negative());
+        Binary { mantissa, exponent: I::new(0) - self.exponent - length - I::new(29) - short }
     }
 
     #[inline(always)]

@@ -174,7 +174,7 @@ impl Unit for VertexWeights {
         let weights = sample.weights();
         let bits = |n: Binary| i64::from(n.nearest_f32().to_bits());
         let edges = sample.e.into_iter().chain(weights.edges.map(bits));
-        let Binary { mantissa, exponent } = weights.reciprocal;
+        let Binary { mantissa, exponent } = weights.reciprocal.first_bits(29);
         let reciprocal = [mantissa, exponent, weights.dominant as i64];
         put(results, edges.chain(reciprocal).chain(weights.b.map(bits)).chain(sample.color_weights()));
     }
