@@ -27,6 +27,7 @@ fn sources(folder: &str) -> Vec<(String, String)> {
     files(&at(folder), &mut found);
     found
         .into_iter()
+        .filter(|path| !name(path).ends_with("_tests.rs"))
         .map(|path| {
             let text = std::fs::read_to_string(&path).unwrap();
             let code = text.split("\nmod tests {").next().unwrap().lines();

@@ -177,26 +177,22 @@ impl<'a> weights::Number for Interpolant<'a> {
             |of| Binary::sum_of_products([[of[0], of[1]], [of[2], of[3]], [of[4], of[5]]]),
         )
     }
-    fn sum_of_edges(edges: [Interpolant<'a>; 3]) -> Interpolant<'a> {
-        Interpolant::of_helper(Helper::Sum, &edges, |of| Binary::sum_of_edges([of[0], of[1], of[2]]))
+    fn sum_of_edges<const COVERED: bool>(edges: [Interpolant<'a>; 3]) -> Interpolant<'a> {
+        Interpolant::of_helper(Helper::Sum, &edges, |of| Binary::sum_of_edges::<COVERED>([of[0], of[1], of[2]]))
     }
-    fn reciprocal(self) -> Interpolant<'a> {
-        Interpolant::of_helper(Helper::Reciprocal, &[self], |of| of[0].reciprocal())
+    fn reciprocal<const COVERED: bool>(self) -> Interpolant<'a> {
+        Interpolant::of_helper(Helper::Reciprocal, &[self], |of| of[0].reciprocal::<COVERED>())
     }
-    fn rest(a: Interpolant<'a>, b: Interpolant<'a>) -> Interpolant<'a> {
-        Interpolant::of_helper(|_| Helper::Rest(Sign::Any), &[a, b], |of| Binary::rest(of[0], of[1]))
+    fn rest<const COVERED: bool>(a: Interpolant<'a>, b: Interpolant<'a>) -> Interpolant<'a> {
+        let sign = if COVERED { Sign::Positive } else { Sign::Any };
+        Interpolant::of_helper(|_| Helper::Rest(sign), &[a, b], |of| Binary::rest::<COVERED>(of[0], of[1]))
     }
-    fn rest_of_weights(a: Interpolant<'a>, b: Interpolant<'a>) -> Interpolant<'a> {
-        Interpolant::of_helper(|_| Helper::Rest(Sign::Positive), &[a, b], |of| Binary::rest_of_weights(of[0], of[1]))
-    }
-    fn exponent(self) -> Number<'a> {
+    fn exponent<const COVERED: bool>(self) -> Number<'a> {
         match self.code() {
-            Some(code) if self.sign() == Sign::Positive => {
-                Number::new(code, code.make(Operation::Exponent(self.operand(code))))
-            }
+            Some(code) if COVERED => Number::new(code, code.make(Operation::Exponent(self.operand(code)))),
             Some(code) => counted(code, Helper::Exponent, &[self.operand(code)]),
             None => match self {
-                Interpolant::Known(known) => Number::Constant(weights::Number::exponent(known)),
+                Interpolant::Known(known) => Number::Constant(weights::Number::exponent::<COVERED>(known)),
                 _ => Number::Constant(0),
             },
         }

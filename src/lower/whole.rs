@@ -24,8 +24,8 @@ use crate::truth::Truth;
 /// A sample of a triangle.
 #[derive(Clone, Copy)]
 pub(crate) struct Sample<'a> {
-    /// The weights b_k.
-    pub(crate) b: [Interpolant<'a>; 3],
+    /// The weights b_0 and b_2.
+    pub(crate) b: [Interpolant<'a>; 2],
     /// Sum of the edge numbers.
     pub(crate) sum: Interpolant<'a>,
 }
@@ -96,9 +96,9 @@ impl<'a> Interpolator<'a> {
         let ratios =
             self.perspective.then(|| [self.binary(Field::Ratio(0)), Interpolant::ONE, self.binary(Field::Ratio(2))]);
         let edges = weights::edge_numbers(e.map(|e| Interpolant::whole(self.code, e)), ratios);
-        let sum = Interpolant::sum_of_edges(edges);
-        let b = weights::completed::<_, COVERED>(weights::shares(edges, sum.reciprocal()));
-        let b = if COVERED { [0, 1, 2].map(|k: usize| b[k].named(|| format!("b{k}"))) } else { b };
+        let sum = Interpolant::sum_of_edges::<COVERED>(edges);
+        let b = weights::outer_weights::<_, COVERED>(weights::shares(edges, sum.reciprocal::<COVERED>()));
+        let b = if COVERED { [0, 1].map(|n: usize| b[n].named(|| format!("b{}", 2 * n))) } else { b };
         Sample { b, sum }
     }
 
@@ -109,7 +109,7 @@ impl<'a> Interpolator<'a> {
 
     /// INT-2: returns W0 and W2.
     pub(crate) fn color_weights(&self, sample: &Sample<'a>) -> [Number<'a>; 2] {
-        [(0, "W0"), (2, "W2")].map(|(k, name): (usize, &str)| {
+        [(0, "W0"), (1, "W2")].map(|(k, name): (usize, &str)| {
             let limit = [1, 8, 256].map(Operand::Constant);
             let b = sample.b[k].operand(self.code);
             let weight = counted(self.code, Helper::Floor, &[b, limit[0], limit[1], limit[2]]).within(0, 256);
@@ -170,7 +170,7 @@ impl<'a> Interpolator<'a> {
     /// DEP-1: returns the depth between those of the vertices.
     fn z_depth(&self, edges: [Interpolant<'a>; 3], e: [Number<'a>; 3]) -> Interpolant<'a> {
         let edges = weights::edge_numbers(edges, None);
-        let shares = weights::shares(edges, Interpolant::sum_of_edges(edges).reciprocal());
+        let shares = weights::shares(edges, Interpolant::sum_of_edges::<true>(edges).reciprocal::<true>());
         self.code.by("DEP-1");
         let reference = depth::reference_vertex(e);
         let of =
@@ -230,7 +230,7 @@ impl<'a> Outcome<'a> {
 
 impl<'a> Whole<'a, '_> {
     /// Returns the fog factor as a byte.
-    pub(crate) fn fog(&self, b: [Interpolant<'a>; 3]) -> Number<'a> {
+    pub(crate) fn fog(&self, b: [Interpolant<'a>; 2]) -> Number<'a> {
         let fog = &self.planned.fog;
         if !fog.enabled {
             // CMB-13: without fog the factor is 1.

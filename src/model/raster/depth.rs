@@ -6,7 +6,7 @@
 use super::binary::Binary;
 use super::setup::Triangle;
 use super::stroke::Figure;
-use super::weights::{Linear, Number, Weights, completed_by, difference, edge_numbers, ratios, shares};
+use super::weights::{Linear, Number, Weights, difference, edge_numbers, outer_weights_by, ratios, shares};
 use crate::number::Integer;
 use crate::number::convert::{align, depth as fraction, split};
 use crate::state::{DepthFormat, DepthRange, DepthTest, PolygonOffset, VertexDepths};
@@ -187,7 +187,9 @@ pub(crate) fn weights(e: [i64; 3]) -> Weights<Binary> {
 pub fn interpolate(e: [i64; 3], z: [f32; 3]) -> Binary {
     let reference = largest_edge(e);
     let choice = reference_vertex(e);
-    sum_of_terms(weights(e).shares, Binary::new(z[reference]), differences(z, reference), choice)
+    let edges = edge_numbers(e.map(Binary::from_edge), None);
+    let shares = shares(edges, Binary::sum_of_edges::<true>(edges).reciprocal::<true>());
+    sum_of_terms(shares, Binary::new(z[reference]), differences(z, reference), choice)
 }
 
 /// DEP-6: returns the depth of vertices with these w.
@@ -200,14 +202,18 @@ fn interpolate_w(e: [i64; 3], w: [f32; 3]) -> Binary {
 /// of the others.
 pub fn w_depth<N: Number>(e: [N; 3], ratios: [N; 3], w: Linear<N>, cut_rest: impl FnOnce(N, N) -> N) -> N {
     let edges = edge_numbers(e, Some(ratios));
-    w_of_shares(shares(edges, N::sum_of_edges(edges).reciprocal()), w, cut_rest)
+    w_of_shares::<N, false>(shares(edges, N::sum_of_edges::<false>(edges).reciprocal::<false>()), w, cut_rest)
 }
 
-/// DEP-6: returns the same of the shares of the vertices.
+/// DEP-6: returns the same of the shares of the vertices. `COVERED` says that none is negative.
 #[inline(always)]
-pub(crate) fn w_of_shares<N: Number>(shares: [N; 3], w: Linear<N>, cut_rest: impl FnOnce(N, N) -> N) -> N {
-    let b = completed_by(shares, cut_rest);
-    N::sum_of_products([[b[0], w.first], [N::one(), w.second], [b[2], w.third]])
+pub(crate) fn w_of_shares<N: Number, const COVERED: bool>(
+    shares: [N; 3],
+    w: Linear<N>,
+    cut_rest: impl FnOnce(N, N) -> N,
+) -> N {
+    let [b0, b2] = outer_weights_by::<N, COVERED>(shares, cut_rest);
+    N::sum_of_products([[b0, w.first], [N::one(), w.second], [b2, w.third]])
 }
 
 /// DEP-6: returns 1 less two weights: cut, not rounded up as in WGT-1.

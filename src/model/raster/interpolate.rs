@@ -43,7 +43,8 @@ impl<'a> Sample<'a> {
     /// WGT-1: returns the value of a number of the vertices.
     #[inline]
     pub fn value(&self, f: &Linear<Binary>) -> Binary {
-        f.at(self.weights().b)
+        let [b0, _, b2] = self.weights().b;
+        f.at([b0, b2])
     }
 
     /// INT-2: returns W0 and W2, each 0..=256. W1 is the remainder.

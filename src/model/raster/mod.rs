@@ -19,6 +19,8 @@ pub mod setup;
 pub mod stroke;
 pub mod triangles;
 pub mod weights;
+#[cfg(test)]
+mod weights_tests;
 
 /// RAS-0: limit of snapped window coordinates, which stay below it in magnitude: 4096 pixels in units of 1/16 pixel.
 pub(crate) const GUARD: i64 = 1 << 16;

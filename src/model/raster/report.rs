@@ -136,7 +136,7 @@ pub(crate) fn ratios<O: Observer>(block: &str, triangle: &Triangle, taken: [f32;
     });
     for k in [0, 2] {
         let step = |name, value| number_step(block, "WGT-1", name, value);
-        let reciprocal = step(format!("w{k}.reciprocal"), Binary::new(taken[k]).reciprocal());
+        let reciprocal = step(format!("w{k}.reciprocal"), Binary::new(taken[k]).reciprocal::<true>());
         let reciprocal = observer.tell(reciprocal.by("reciprocal", vec![w[k].clone()]));
         observer.step(step(format!("r{k}"), ratios[k]).by("cut_24_product", vec![w[1].clone(), reciprocal]));
     }
@@ -163,12 +163,12 @@ pub(crate) fn linear<O: Observer>(place: Place<'_>, f: [f32; 3], b: [Binary; 3],
     let corners: [Operand; 3] =
         std::array::from_fn(|k| observer.tell(float_step(block, rule, format!("{name}.f{k}"), f[k], f64::from(f[k]))));
     let [first, third] = differences(f);
-    let value = Linear::<Binary>::new(f);
+    let (value, outer) = (Linear::<Binary>::new(f), [b[0], b[2]]);
     let step = |suffix: &str, value: Binary| number_step(block, "WGT-1", format!("{own}{suffix}"), value);
     if [first, third] == [0.0; 2] {
-        return observer.tell(step("", value.at(b)).by("number", vec![corners[1].clone()]));
+        return observer.tell(step("", value.at(outer)).by("number", vec![corners[1].clone()]));
     }
-    let terms = value.terms(b);
+    let terms = value.terms(outer);
     let mut products = [(0, first), (1, f[1]), (2, third)].map(|(k, difference)| {
         if k == 1 {
             return corners[1].clone();
@@ -187,5 +187,5 @@ pub(crate) fn linear<O: Observer>(place: Place<'_>, f: [f32; 3], b: [Binary; 3],
         products.rotate_left(1);
         term
     });
-    observer.tell(step("", value.at(b)).by("number_sum", cut.to_vec()))
+    observer.tell(step("", value.at(outer)).by("number_sum", cut.to_vec()))
 }

@@ -34,21 +34,18 @@ pub trait Number: Copy {
     /// Returns the sum of a number and two products, each toward zero to a multiple of the 24th bit of the largest magnitude.
     fn linear(number: Self, factors: [[Self; 2]; 2]) -> Self;
     /// Returns the sum of edge numbers for a [`reciprocal`](Self::reciprocal), each toward zero to a multiple of the 29th bit of the largest magnitude.
-    /// Outside of a triangle it may come to 0; then it is the last of these bits.
-    fn sum_of_edges(edges: [Self; 3]) -> Self;
+    /// Outside of a triangle it may come to 0; then it is the last of these bits. `COVERED` says that no edge number is negative.
+    fn sum_of_edges<const COVERED: bool>(edges: [Self; 3]) -> Self;
     /// Returns the sum of products, each toward zero to a multiple of the 29th bit of the largest magnitude.
     fn sum_of_products(factors: [[Self; 2]; 3]) -> Self;
-    /// Returns the reciprocal of a number of at most 31 bits by Newton's method, exactly 1 / self for a power of two. The sign is kept.
-    fn reciprocal(self) -> Self;
-    /// Returns 1 - a - b, its magnitude rounded up to 24 significant bits.
-    fn rest(a: Self, b: Self) -> Self;
-    /// The same of weights that are not negative, as those of covered pixels.
-    #[inline(always)]
-    fn rest_of_weights(a: Self, b: Self) -> Self {
-        Self::rest(a, b)
-    }
-    /// Returns the exponent.
-    fn exponent(self) -> Self::Exponent;
+    /// Returns the reciprocal of a number of at most 31 bits by Newton's method, exactly 1 / self for a power of two. The sign is kept. `COVERED` says that
+    /// the number is positive.
+    fn reciprocal<const COVERED: bool>(self) -> Self;
+    /// Returns 1 - a - b, its magnitude rounded up to 24 significant bits. `COVERED` says that the weights are not negative; then a rest below 0 may be any
+    /// number.
+    fn rest<const COVERED: bool>(a: Self, b: Self) -> Self;
+    /// Returns the exponent. `COVERED` says that the number is not negative.
+    fn exponent<const COVERED: bool>(self) -> Self::Exponent;
     /// Returns whether the first exponent is larger than the second.
     fn is_above(a: Self::Exponent, b: Self::Exponent) -> Self::Choice;
     /// Returns `self` where `condition` holds, otherwise `other`.
@@ -72,24 +69,29 @@ pub struct Weights<N> {
     pub b: [N; 3],
 }
 
-impl<N: Number<Choice = bool>> Weights<N> {
+impl<N: Number> Weights<N>
+where
+    N::Choice: Into<bool>,
+{
     /// Returns the weights where the edge functions are `e`. `ratios` are the [`ratios`] of the vertices if their w differ.
     #[inline(always)]
     pub fn new(e: [N; 3], ratios: Option<[N; 3]>) -> Weights<N> {
         let edges = edge_numbers(e, ratios);
-        let sum = N::sum_of_edges(edges);
-        let reciprocal = sum.reciprocal();
+        let sum = N::sum_of_edges::<false>(edges);
+        let reciprocal = sum.reciprocal::<false>();
         let shares = shares(edges, reciprocal);
-        let dominance = dominance(shares);
-        let dominant = if dominance[0] { 0 } else { 1 + usize::from(dominance[1]) };
-        Weights { edges, sum, reciprocal, shares, dominant, b: completed::<N, false>(shares) }
+        let [first, third] = dominance::<N, false>(shares).map(Into::into);
+        let dominant = if first { 0 } else { 1 + usize::from(third) };
+        let mut b = shares;
+        b[dominant] = N::rest::<false>(shares[(dominant + 1) % 3], shares[(dominant + 2) % 3]);
+        Weights { edges, sum, reciprocal, shares, dominant, b }
     }
 }
 
 /// WGT-1: returns the ratios r_k of positive w of the vertices: w_1 times the reciprocal of w_k, cut to 24 bits. r_1 is 1.
 #[inline(always)]
 pub fn ratios<N: Number>(w: [N; 3]) -> [N; 3] {
-    let ratio = |k: usize| w[1].product::<29>(w[k].reciprocal());
+    let ratio = |k: usize| w[1].product::<29>(w[k].reciprocal::<true>());
     [ratio(0), N::one(), ratio(2)]
 }
 
@@ -112,25 +114,24 @@ pub fn shares<N: Number>(edges: [N; 3], reciprocal: N) -> [N; 3] {
 /// WGT-1: returns whether the first and whether the third weight dominates. The second does if neither does. Among weights of the same exponent
 /// the first precedes the second, the second the third and the third the first; of three, the third dominates.
 #[inline(always)]
-pub fn dominance<N: Number>(b: [N; 3]) -> [N::Choice; 2] {
-    let [x, y, z] = [b[0].exponent(), b[1].exponent(), b[2].exponent()];
-    let first = !N::is_above(y, x) & N::is_above(x, z);
-    [first, !(first | (!N::is_above(z, y) & N::is_above(y, x)))]
+pub fn dominance<N: Number, const COVERED: bool>(b: [N; 3]) -> [N::Choice; 2] {
+    let [x, y, z] = [b[0].exponent::<COVERED>(), b[1].exponent::<COVERED>(), b[2].exponent::<COVERED>()];
+    let (first_to_second, first_to_third) = (!N::is_above(y, x), N::is_above(x, z));
+    [first_to_second & first_to_third, !first_to_third & (first_to_second | N::is_above(z, y))]
 }
 
-/// WGT-1: returns the weights of shares: the dominant one is the rest of the others. `COVERED` says that no share is negative.
+/// WGT-1: returns b_0 and b_2, the weights that linear functions take, of shares. `COVERED` says that no share is negative.
 #[inline(always)]
-pub fn completed<N: Number, const COVERED: bool>(b: [N; 3]) -> [N; 3] {
-    completed_by(b, |one, other| if COVERED { N::rest_of_weights(one, other) } else { N::rest(one, other) })
+pub fn outer_weights<N: Number, const COVERED: bool>(shares: [N; 3]) -> [N; 2] {
+    outer_weights_by::<N, COVERED>(shares, N::rest::<COVERED>)
 }
 
-/// Returns the weights of shares, of which the dominant one is what `rest` makes of the others.
+/// Returns b_0 and b_2 of shares, of which the dominant one is what `rest` makes of the others. If the second dominates, nobody asks for it.
 #[inline(always)]
-pub fn completed_by<N: Number>(b: [N; 3], rest: impl FnOnce(N, N) -> N) -> [N; 3] {
-    let [first, third] = dominance(b);
-    // The two that do not dominate: 1 and 2, 0 and 2, or 0 and 1.
-    let rest = rest(b[1].or(first | third, b[2]), b[2].or(first, b[0]));
-    [rest.or(first, b[0]), b[1].or(first | third, rest), rest.or(third, b[2])]
+pub fn outer_weights_by<N: Number, const COVERED: bool>(b: [N; 3], rest: impl FnOnce(N, N) -> N) -> [N; 2] {
+    let [first, third] = dominance::<N, COVERED>(b);
+    let rest = rest(b[1], b[2].or(first, b[0]));
+    [rest.or(first, b[0]), rest.or(third, b[2])]
 }
 
 /// A number of the vertices, as [`Linear::at`] takes it.
@@ -160,17 +161,17 @@ impl<N: Number> Linear<N> {
         Linear::from_values(f, difference, N::from_f32)
     }
 
-    /// WGT-1: returns the number where the weights are `b`: at most 26 bits.
+    /// WGT-1: returns the number where b_0 and b_2 are these: at most 26 bits.
     #[inline(always)]
-    pub fn at(&self, b: [N; 3]) -> N {
-        N::linear(self.second, [[b[0], self.first], [b[2], self.third]])
+    pub fn at(&self, [b0, b2]: [N; 2]) -> N {
+        N::linear(self.second, [[b0, self.first], [b2, self.third]])
     }
 }
 
 impl Linear<Binary> {
     /// WGT-1: returns the terms b_0 (f_0 - f_1), f_1 and b_2 (f_2 - f_1).
-    pub fn terms(&self, b: [Binary; 3]) -> [Binary; 3] {
-        [b[0].times(self.first), self.second, b[2].times(self.third)]
+    pub fn terms(&self, [b0, b2]: [Binary; 2]) -> [Binary; 3] {
+        [b0.times(self.first), self.second, b2.times(self.third)]
     }
 }
 
@@ -312,9 +313,9 @@ impl<I: Integer> Number for Binary<I> {
     }
 
     #[inline(always)]
-    fn sum_of_edges(edges: [Binary<I>; 3]) -> Binary<I> {
+    fn sum_of_edges<const COVERED: bool>(edges: [Binary<I>; 3]) -> Binary<I> {
         let sum = aligned_sum::<29, I>(edges.map(|edge| Term::new(edge).raised(5)));
-        let mantissa = I::new(1).or(sum.mantissa.is_zero(), sum.mantissa);
+        let mantissa = if COVERED { sum.mantissa } else { I::new(1).or(sum.mantissa.is_zero(), sum.mantissa) };
         Binary { mantissa, exponent: sum.exponent - I::new(5) }
     }
 
@@ -324,8 +325,8 @@ impl<I: Integer> Number for Binary<I> {
     }
 
     #[inline(always)]
-    fn reciprocal(self) -> Binary<I> {
-        let sum = self.mantissa.magnitude();
+    fn reciprocal<const COVERED: bool>(self) -> Binary<I> {
+        let sum = if COVERED { self.mantissa } else { self.mantissa.magnitude() };
         let length = sum.bits() - I::new(1);
         // The sum in [1, 2), in units of 2^-30.
         let m = sum.up(I::new(30) - length).within(1 << 30, (1 << 31) - 1);
@@ -336,30 +337,30 @@ impl<I: Integer> Number for Binary<I> {
         let third = (second * factor).down(I::new(16)).within(0, 1 << 29);
         // It has 29 bits, but 28 where it is hardly below 1/2, and 30 where it is 1.
         let short = I::new(1).or(third.is_below(I::new(1 << 28)), I::new(0));
-        let mantissa = third.up(short).within(1 << 28, 1 << 29).negated(self.mantissa.is_negative());
+        let mantissa = third.up(short).within(1 << 28, 1 << 29);
+        let mantissa = if COVERED { mantissa } else { mantissa.negated(self.mantissa.is_negative()) };
         Binary { mantissa, exponent: I::new(0) - self.exponent - length - I::new(29) - short }
     }
 
+    /// Bits are lost only where the rest is no number of 24 bits, which its last bit says.
+    ///
+    /// Covered: both weights are at most 1, and what they lose below the 60th fraction bit does not matter, because the rest is at least 1/8, and where
+    /// both lose some it is 1 to 24 bits.
     #[inline(always)]
-    fn rest(a: Binary<I>, b: Binary<I>) -> Binary<I> {
-        // Bits are lost only where the rest is no number of 24 bits, which its last bit says.
+    fn rest<const COVERED: bool>(a: Binary<I>, b: Binary<I>) -> Binary<I> {
+        if COVERED {
+            let fixed = |n: Binary<I>| n.mantissa.up(I::new(37)).down((I::new(-23) - n.exponent).least(I::new(63)));
+            let rest = (I::new(1 << 60) - fixed(a) - fixed(b)).greatest(I::new(0)).within(0, 1 << 60);
+            return rounded_up(Binary { mantissa: rest, exponent: I::new(-60) });
+        }
         let Binary { mantissa: rest, exponent } = Binary::whole(I::new(1)).plus(a.negated().plus(b.negated(), 60), 60);
         let Binary { mantissa, exponent } = rounded_up(Binary { mantissa: rest.magnitude(), exponent });
         Binary { mantissa: mantissa.negated(rest.is_negative()), exponent }
     }
 
-    /// Both weights are below 1. What they lose below the 60th fraction bit does not matter: the rest is at least 1/8, and where both lose some it is 1 to
-    /// 24 bits.
     #[inline(always)]
-    fn rest_of_weights(a: Binary<I>, b: Binary<I>) -> Binary<I> {
-        let fixed = |n: Binary<I>| n.mantissa.up(I::new(36)).down((I::new(-24) - n.exponent).least(I::new(63)));
-        let rest = (I::new(1 << 60) - fixed(a) - fixed(b)).within(1, 1 << 60);
-        rounded_up(Binary { mantissa: rest, exponent: I::new(-60) })
-    }
-
-    #[inline(always)]
-    fn exponent(self) -> I {
-        I::new(LEAST_TOP).or(self.mantissa.is_negative(), self.exponent)
+    fn exponent<const COVERED: bool>(self) -> I {
+        if COVERED { self.exponent } else { I::new(LEAST_TOP).or(self.mantissa.is_negative(), self.exponent) }
     }
 
     #[inline(always)]
@@ -370,161 +371,5 @@ impl<I: Integer> Number for Binary<I> {
     #[inline(always)]
     fn or(self, condition: I::Choice, other: Binary<I>) -> Binary<I> {
         Binary::or(self, condition, other)
-    }
-}
-
-#[cfg(test)]
-#[allow(clippy::float_arithmetic, reason = "choosing numbers")]
-mod tests {
-    use super::*;
-    use crate::random::Random;
-
-    fn double(n: Binary) -> f64 {
-        n.mantissa as f64 * 2_f64.powi(n.exponent as i32)
-    }
-
-    /// Returns numbers of up to `bits` bits at which roundings change: powers of two, their neighbours, ties, runs of ones, and random ones.
-    fn boundary(random: &mut Random, bits: u32) -> i64 {
-        let top = random.bits() % u64::from(bits) + 1;
-        let low = random.bits() % top;
-        let one = |n: u64| 1_i64 << n;
-        let n = match random.bits() % 8 {
-            0 => one(top - 1),
-            1 => one(top - 1) - 1,
-            2 => one(top - 1) + 1,
-            3 => one(top - 1) + one(low) - 1,
-            4 => one(top - 1) - one(low),
-            5 => one(top - 1) + one(low),
-            6 => (random.bits() >> (64 - top)) as i64 & !(one(low) - 1),
-            _ => (random.bits() >> (64 - top)) as i64,
-        };
-        n.clamp(0, one(u64::from(bits)) - 1)
-    }
-
-    fn w(random: &mut Random) -> f32 {
-        let mantissa = boundary(random, 23) as u32;
-        f32::from_bits((127 - 20 + (random.bits() % 40) as u32) << 23 | mantissa)
-    }
-
-    fn value(random: &mut Random) -> f32 {
-        let exponent = match random.bits() % 4 {
-            0 => random.bits() % 255,
-            1 => 100 + random.bits() % 50,
-            2 => 126 + random.bits() % 3,
-            _ => return if random.bits().is_multiple_of(2) { 0.0 } else { -0.0 },
-        };
-        f32::from_bits(((random.bits() % 2) as u32) << 31 | (exponent as u32) << 23 | boundary(random, 23) as u32)
-    }
-
-    /// Compares doubles with the definition, inside and outside of triangles.
-    #[test]
-    fn doubles_are_the_definition() {
-        let mut random = Random::seeded(65);
-        for step in 0..1_500_000 {
-            let mut e: [i64; 3] = std::array::from_fn(|_| boundary(&mut random, 37));
-            if step % 7 == 0 {
-                e[1] = e[0];
-            }
-            if step % 3 == 0 {
-                let k = (random.bits() % 3) as usize;
-                e[k] = -e[k];
-            }
-            if e.iter().sum::<i64>() <= 0 {
-                continue;
-            }
-            let corners = [w(&mut random), w(&mut random), w(&mut random)];
-            let ratios = super::ratios(corners.map(Binary::new));
-            assert_eq!(ratios.map(double), super::ratios(corners.map(f64::from)), "{corners:?}");
-            let ratios = (step % 4 > 0).then_some(ratios);
-            let exact = Weights::<Binary>::new(e.map(Binary::from_edge), ratios);
-            let found = Weights::<f64>::new(e.map(f64::from_edge), ratios.map(|r| r.map(double)));
-            let context = || format!("{e:?} {corners:?} {exact:?} {found:?}");
-            assert_eq!(exact.edges.map(double), found.edges, "{}", context());
-            assert_eq!(double(exact.sum), found.sum, "{}", context());
-            assert_eq!(double(exact.reciprocal), found.reciprocal, "{}", context());
-            assert_eq!(exact.shares.map(double), found.shares, "{}", context());
-            assert_eq!(exact.b.map(double), found.b, "{}", context());
-            assert_eq!(exact.dominant, found.dominant);
-            let f = [value(&mut random), value(&mut random), value(&mut random)];
-            let [exact, found] = [double(Linear::<Binary>::new(f).at(exact.b)), Linear::<f64>::new(f).at(found.b)];
-            assert_eq!(exact, found, "{f:?} {}", context());
-        }
-    }
-
-    /// Rests of weights that are not negative, many of them hardly beside a number of 24 bits.
-    #[test]
-    fn rests_of_weights_are_rests() {
-        let mut random = Random::seeded(29);
-        for step in 0..1_000_000 {
-            let mut weight = || {
-                let (mantissa, down) = (boundary(&mut random, 24), random.bits() % 60);
-                let down = down as i32 + 1;
-                Binary { mantissa, exponent: (-down - bits_of(mantissa)).into() }.cut()
-            };
-            let (a, mut b) = (weight(), weight());
-            if step % 2 == 0 {
-                // So that the sum hardly differs from a multiple of 2^-25.
-                let beyond = (1_i64 << 24) - (step & 3);
-                let unit = a.exponent;
-                b = Binary { mantissa: beyond, exponent: unit - 24 }.cut();
-            }
-            if double(a) + double(b) > 0.7 {
-                continue;
-            }
-            let rest = |a: Binary, b: Binary| double(Binary::rest(a, b));
-            assert_eq!(f64::rest_of_weights(double(a), double(b)), rest(a, b), "{a:?} {b:?}");
-            assert_eq!(f64::rest_of_weights(double(b), double(a)), rest(a, b), "{a:?} {b:?}");
-            assert_eq!(double(Binary::rest_of_weights(a, b)), rest(a, b), "{a:?} {b:?}");
-        }
-    }
-
-    fn bits_of(n: i64) -> i32 {
-        64 - n.leading_zeros() as i32
-    }
-
-    /// Sums of all lengths: two steps of Newton's method stay below 1 / S, and they lack less than 4.5 units of the 29th bit.
-    #[test]
-    fn reciprocals_are_low() {
-        let mut random = Random::seeded(3);
-        for _ in 0..200_000 {
-            let sum = boundary(&mut random, 31).clamp(1, 3 << 29);
-            let Binary { mantissa, exponent } = Binary { mantissa: sum, exponent: 0 }.reciprocal();
-            let (sum, mantissa) = (sum as u128, mantissa as u128);
-            if sum.is_power_of_two() {
-                assert_eq!(mantissa * sum, 1 << -exponent);
-                continue;
-            }
-            assert!(mantissa * sum < 1 << -exponent && (2 * mantissa + 9) * sum > 2 << -exponent, "{sum}");
-        }
-    }
-
-    /// Sums of captured triangles, whose reciprocals their depths decide: three are one below the floor.
-    #[test]
-    fn captured_reciprocals() {
-        let r = |sum: i64| Binary { mantissa: sum, exponent: 0 }.reciprocal().mantissa;
-        assert_eq!(
-            [460_800, 798_720, 39_321_600, 765_952].map(r),
-            [305_419_896, 352_407_572, 458_129_844, 367_483_831]
-        );
-        assert_eq!([371_433_472, 371_433_476].map(r), [387_997_310, 387_997_305]);
-    }
-
-    #[test]
-    fn a_number_worked_by_hand() {
-        // A captured pixel: s of .89999998, 1.10000002, 1.10000002 where b_0 is 124/128 is .90625, texel 232 of 256. The exact value lies below.
-        let b = [(124, -7), (0, 0), (0, 0)].map(|(mantissa, exponent)| Binary { mantissa, exponent });
-        let s = Linear::<Binary>::new([0.9, 1.1, 1.1]).at(b);
-        assert_eq!(double(s), 0.90625);
-        let b = [(0, 0), (0, 0), (4, -7)].map(|(mantissa, exponent)| Binary { mantissa, exponent });
-        assert!(double(Linear::<Binary>::new([0.9, 0.9, 1.1]).at(b)) < 0.90625);
-    }
-
-    #[test]
-    fn equal_weights_go_round() {
-        let of = |n: [i64; 3]| dominance::<Binary>(n.map(|n| Binary::from_edge(n).cut()));
-        assert_eq!(
-            [of([5, 5, 2]), of([2, 5, 5]), of([5, 2, 5]), of([4, 4, 4])],
-            [[true, false], [false, false], [false, true], [false, true]]
-        );
     }
 }

@@ -231,7 +231,7 @@ impl Unit for LinearNumber {
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         let [first, third] = [0, 1].map(|n| Binary::new(float(inputs[n])));
         let f = [2, 3, 4].map(|n| float(inputs[n]));
-        let Binary { mantissa, exponent } = Linear::<Binary>::new(f).at([first, Binary::default(), third]);
+        let Binary { mantissa, exponent } = Linear::<Binary>::new(f).at([first, third]);
         let zeros = mantissa.trailing_zeros().min(63);
         put(results, differences(f).map(f32::to_bits));
         // An odd mantissa, which does not depend on how a number is held.

@@ -74,14 +74,14 @@ fn attributes(maker: &Maker) -> Vec<Piece> {
         vec![reader.result(of.at(reader.sample().b))]
     });
     let fixed = fog_cases(maker, |_, mode| vec![Number::Constant(mode.map_or(-1, |mode| not_finite(mode).into()))]);
-    let sample = "@triangle, @in @binary b[4]";
+    let sample = "@triangle, @in @binary b[3]";
     vec![
         one("nb_edges", "The edge functions of a pixel.", "@triangle, @int x, @int y", "e[3]", edges).wide(),
         one(
             "nb_weights",
             "The weights of a pixel, and the sum of its edge numbers.",
             "@triangle, @in @long e[3]",
-            "b[4]",
+            "b[3]",
             weights,
         )
         .binary(),

@@ -69,8 +69,8 @@ impl<'a> Reader<'a> {
 
     /// Returns the sample whose weights are parameters.
     pub(super) fn sample(&self) -> Sample<'a> {
-        let [first, second, third, sum] = ["b[0]", "b[1]", "b[2]", "sum"].map(|name| self.binary(name));
-        Sample { b: [first, second, third], sum }
+        let [first, third, sum] = ["b[0]", "b[1]", "sum"].map(|name| self.binary(name));
+        Sample { b: [first, third], sum }
     }
 
     /// Returns a result that is a binary number.

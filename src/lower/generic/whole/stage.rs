@@ -76,10 +76,10 @@ pub(super) fn pieces(maker: &Maker) -> Vec<Piece> {
         })
         .collect();
     let component = maker.case(0, "", |reader| {
-        let [b0, b1, b2] = ["b[0]", "b[1]", "b[2]"].map(|name| reader.binary(name));
+        let b = ["b[0]", "b[1]"].map(|name| reader.binary(name));
         let of = reader.interpolator().linear(|part| Field::Coordinate(ANY_UNIT, ANY_COMPONENT, part));
         reader.code.by("WGT-1");
-        vec![reader.result(of.at([b0, b1, b2]))]
+        vec![reader.result(of.at(b))]
     });
     let rounded = maker.case(0, "", |reader| vec![Single::rounded(reader.code, reader.binary("number")).0]);
     let fraction = maker.case(0, "", |reader| {
@@ -124,7 +124,7 @@ pub(super) fn pieces(maker: &Maker) -> Vec<Piece> {
         piece(
             "nb_component",
             "A component of a unit's coordinates.",
-            "@triangle, @uint unit, @int n, @in @binary b[4]",
+            "@triangle, @uint unit, @int n, @in @binary b[3]",
             vec![component],
         )
         .binary(),

@@ -85,7 +85,7 @@ pub(crate) fn test_depths<const FMA: bool>(
 ) {
     let Block { pixels, incoming, alive, runs, depth, used, taken, .. } = block;
     let lanes = lane..lane + (*used - lane).next_multiple_of(8);
-    depths::depths(context, shape, lanes.clone(), pixels, incoming);
+    depths::depths::<FMA>(context, shape, lanes.clone(), pixels, incoming);
     if job.compiled.drops_late {
         return;
     }

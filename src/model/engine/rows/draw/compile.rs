@@ -142,7 +142,8 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> CompiledDraw
     compiled.reads_surface = tests_late || compiled.destination.iter().any(Option::is_some);
     compiled.read = [compiled.primary, compiled.secondary]
         .map(|slots| u32::from_le_bytes(slots.map(|slot| if slot.is_some() { 255 } else { 0 })));
-    compiled.interpolates = compiled.weighs() || compiled.read != [0; 2] || draw.depth_test.is_some();
+    let weighs = compiled.shader.is_some() || compiled.fog.is_some() || !compiled.samplers.is_empty();
+    compiled.interpolates = weighs || compiled.read != [0; 2] || draw.depth_test.is_some();
     compiled
 }
 

@@ -18,7 +18,6 @@ use crate::raster::setup::Triangle;
 use crate::state::{Named, named};
 use multiversion::target::match_target;
 use multiversion::{multiversion, target};
-use std::ops::Range;
 
 named! {
     /// Instruction sets that the fast engine is compiled for.
@@ -109,7 +108,7 @@ kernels! {
         fn spans::find_spans(figure: &Triangle, top: i64, columns: (i64, i64)) -> Spans;
         fn triangle::set_up(context: &TriangleContext<'_>, shape: &Shape, job: &Job<'_>, block: &mut Block);
         fn block::test_depths(context: &TriangleContext<'_>, shape: &Shape, job: &Job<'_>, block: &mut Block, of: (usize, usize), band: &mut Band<'_>);
-        fn triangle::interpolate(context: &TriangleContext<'_>, shape: &Shape, job: &Job<'_>, block: &mut Block, lanes: Range<usize>);
+        fn triangle::interpolate(context: &TriangleContext<'_>, shape: &Shape, job: &Job<'_>, block: &mut Block, of: (usize, usize));
         fn fetch::sample(reader: Reader<'_>, pixels: &Pixels, place: &mut Place, quads: &mut Quads, work: &mut Workspace, alive: &mut [bool], rows: &mut [PerLane<i16>]);
         fn filter::filter(lanes: Lanes, columns: &[Column], entries: &[u32; BLOCK], at: [&[i32; BLOCK]; 2], footprints: &mut [Footprint; BLOCK], channels: [&mut [i16; BLOCK]; 4]);
         fn block::shade(job: &Job<'_>, block: &mut Block);

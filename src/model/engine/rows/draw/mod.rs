@@ -202,9 +202,7 @@ impl Drawing<'_, '_> {
                 if !std::mem::replace(&mut self.is_set_up, true) {
                     (job.kernels.set_up)(context, shape, job, block);
                 }
-                // Whole vectors, of which the next triangle overwrites what is too much.
-                let lanes = lane..lane + (block.used - lane).next_multiple_of(8);
-                (job.kernels.interpolate)(context, shape, job, block, lanes);
+                (job.kernels.interpolate)(context, shape, job, block, (lane, run));
             }
         }
         if block.runs.len() == run {

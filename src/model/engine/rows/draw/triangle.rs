@@ -13,7 +13,6 @@ use crate::engine::rows::shading::compiled::CompiledDraw;
 use crate::raster::fog::FogPlane;
 use crate::raster::stroke::Figure;
 use crate::raster::weights::Linear;
-use std::ops::Range;
 
 /// The functions of a triangle besides colours and depths. Those of another triangle are replaced.
 #[derive(Debug, Default)]
@@ -27,6 +26,8 @@ pub(crate) struct Functions {
     /// Floors of colour weights and coordinates, if the triangle has no other function and all are estimated.
     estimates: Estimates,
     is_estimated: bool,
+    /// Whether something besides colours and depths follows from weights.
+    weighs: bool,
 }
 
 impl Functions {
@@ -34,15 +35,17 @@ impl Functions {
     #[inline(always)]
     pub(crate) fn set(&mut self, context: &TriangleContext<'_>, shape: &Shape, compiled: &CompiledDraw) {
         let (draw, vertices) = (context.draw, context.vertices());
+        if draw.point_sprite {
+            self.sprite.set(context, &compiled.samplers);
+        }
+        self.weighs = compiled.shader.is_some() || compiled.fog.is_some() || compiled.takes_quads;
         self.coordinates.clear();
         for sampler in &compiled.samplers {
             let unit = &draw.units[sampler.index];
-            let of =
-                if sampler.interpolates() { Coordinates::new(unit, sampler, vertices) } else { Default::default() };
+            let weighs = sampler.interpolates() && !(self.sprite.applies(sampler) && sampler.third.is_none());
+            let of = if weighs { Coordinates::new(unit, sampler, vertices) } else { Default::default() };
             self.coordinates.push(of);
-        }
-        if draw.point_sprite {
-            self.sprite.set(context, &compiled.samplers);
+            self.weighs |= weighs;
         }
         self.numbers.clear();
         for (stage, component, _) in compiled.shader.iter().flat_map(|shader| &shader.varying) {
@@ -50,7 +53,10 @@ impl Functions {
             self.numbers.push(Linear::new(vertices.coordinate(set, *component)));
         }
         self.fog = compiled.fog.map(|_| FogPlane::new(draw.fog.function, vertices.fog()));
-        let is_plain = compiled.shader.is_none() && self.fog.is_none() && !compiled.takes_quads;
+        let is_plain = compiled.shader.is_none()
+            && self.fog.is_none()
+            && !compiled.takes_quads
+            && context.triangle.figure != Figure::Point;
         self.is_estimated = is_plain && self.estimates.set(shape, &compiled.samplers, &self.coordinates);
     }
 }
@@ -61,20 +67,25 @@ pub(crate) fn set_up<const FMA: bool>(context: &TriangleContext<'_>, shape: &Sha
     block.functions.set(context, shape, job.compiled);
 }
 
-/// Interpolates everything that a draw reads in some lanes of a triangle.
+/// Interpolates everything that a draw reads in the lanes of a triangle from the first one on, whose pixels are those of the runs from the first one on.
 #[inline(always)]
 pub(crate) fn interpolate<const FMA: bool>(
     context: &TriangleContext<'_>,
     shape: &Shape,
     job: &Job<'_>,
     block: &mut Block,
-    lanes: Range<usize>,
+    (lane, run): (usize, usize),
 ) {
     let compiled = job.compiled;
+    // Whole vectors, of which the next triangle overwrites what is too much.
+    let lanes = lane..lane + (block.used - lane).next_multiple_of(8);
+    // Pixels beside the triangle, which quads have along its edges, count.
+    let around =
+        compiled.takes_quads && block.runs[run..].iter().map(|run| run.count()).sum::<usize>() < block.used - lane;
     let (primary, secondary) = (&context.primary, &context.secondary);
     let varies = compiled.varies(primary, secondary);
-    let Block { pixels, functions, places, workshop, colors, rows, .. } = block;
-    let Functions { estimates, is_estimated, coordinates, sprite, numbers, fog } = functions;
+    let Block { pixels, functions, places, workshop, colors, rows, runs, .. } = block;
+    let Functions { estimates, is_estimated, weighs, coordinates, sprite, numbers, fog } = functions;
     // All lanes, or those that no estimate decides. There is one call of each function, or compilers would not inline what it calls for each lane.
     let all = match is_estimated {
         true => {
@@ -88,10 +99,10 @@ pub(crate) fn interpolate<const FMA: bool>(
         true => (&mut estimates.pixels, &mut estimates.colors),
         false => (&mut *pixels, &mut *colors),
     };
-    if (varies || compiled.weighs()) && !all.is_empty() {
+    if (varies || *weighs) && !all.is_empty() {
         match context.triangle.figure {
             Figure::Point => own.weigh_point(all.clone()),
-            Figure::Triangle | Figure::Line => own.weigh(shape, all.clone(), compiled.takes_quads),
+            Figure::Triangle | Figure::Line => own.weigh::<FMA>(shape, all.clone(), around),
         }
         if varies {
             colors::weigh(own, all.clone(), weights);
@@ -107,12 +118,13 @@ pub(crate) fn interpolate<const FMA: bool>(
         return;
     }
     let b = if *is_estimated { &estimates.pixels.b } else { &pixels.b };
-    let weights = LaneWeights::new(b, all.clone(), !compiled.takes_quads);
+    let weights = LaneWeights::new(b, all.clone(), !around);
     for ((sampler, coordinates), place) in compiled.samplers.iter().zip(&*coordinates).zip(places) {
         if sampler.interpolates() {
             let own = if *is_estimated { &mut estimates.place } else { &mut *place };
-            if !sprite.compute_places(sampler, pixels, all.clone(), own) {
-                coordinates.compute_places(sampler, weights, all.clone(), own);
+            match sprite.applies(sampler) {
+                true => sprite.compute_places(sampler, pixels, all.clone(), &runs[run..], own),
+                false => coordinates.compute_places(sampler, weights, all.clone(), own),
             }
             coordinates.place_third(sampler, weights, all.clone(), own);
             if *is_estimated {

@@ -40,7 +40,7 @@ impl Shape {
             b: real(triangle.b),
             c: real(triangle.c),
             ratios: (!is_flat).then(|| ratios(w.map(f64::from))),
-            reciprocal: is_whole.then(|| (triangle.doubled_area as f64).reciprocal()),
+            reciprocal: is_whole.then(|| (triangle.doubled_area as f64).reciprocal::<true>()),
         }
     }
 
@@ -50,10 +50,11 @@ impl Shape {
         self.c[0] + self.c[1] + self.c[2]
     }
 
-    /// RAS-2: returns the edge functions of a pixel.
+    /// RAS-2: returns the edge functions of a pixel. They are exact in both ways.
     #[inline(always)]
-    pub(crate) fn edges(&self, x: f64, y: f64) -> [f64; 3] {
-        let edge = |k: usize| self.a[k] * x + (self.b[k] * y + self.c[k]);
+    pub(crate) fn edges<const FMA: bool>(&self, x: f64, y: f64) -> [f64; 3] {
+        let sum = |a: f64, b: f64, c: f64| if FMA { a.mul_add(b, c) } else { a * b + c };
+        let edge = |k: usize| sum(self.a[k], x, sum(self.b[k], y, self.c[k]));
         [edge(0), edge(1), edge(2)]
     }
 }

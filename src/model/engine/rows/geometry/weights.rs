@@ -11,7 +11,7 @@
 
 use super::shape::Shape;
 use crate::engine::rows::lanes::PerLane;
-use crate::raster::weights::{Number, completed, edge_numbers, shares};
+use crate::raster::weights::{Number, edge_numbers, outer_weights, shares};
 use std::ops::Range;
 
 /// Number of lanes of which a pass is done before the next pass begins, so that what it hands on stays in the nearest cache.
@@ -43,27 +43,29 @@ pub(crate) struct Pixels {
     pub(crate) y: PerLane<f64>,
     /// b_0 and b_2.
     pub(crate) b: [PerLane<f64>; 2],
-    /// The reciprocals R, if quads are taken. They are negative behind the viewer.
+    /// The reciprocals R. They are negative behind the viewer.
     pub(crate) reciprocals: PerLane<f64>,
     passes: Box<Passes>,
 }
 
 impl Pixels {
-    /// Computes the weights of lanes. `keeps` says that pixels beside the triangle count, and that reciprocals are kept.
+    /// Computes the weights of lanes, and keeps the reciprocals. `around` says that pixels beside the triangle count.
     #[inline(always)]
-    pub(crate) fn weigh(&mut self, shape: &Shape, lanes: Range<usize>, keeps: bool) {
+    pub(crate) fn weigh<const FMA: bool>(&mut self, shape: &Shape, lanes: Range<usize>, around: bool) {
         for first in lanes.clone().step_by(CHUNK) {
             let part = first..(first + CHUNK).min(lanes.end);
             let Pixels { x, y, b: [first, third], reciprocals, passes } = &mut *self;
-            passes.run(shape, shape.ratios, &x[part.clone()], &y[part.clone()]);
+            let (x, y) = (&x[part.clone()], &y[part.clone()]);
             let (first, third) = (&mut first[part.clone()], &mut third[part.clone()]);
-            if keeps {
+            if around {
+                passes.run::<FMA, false>(shape, shape.ratios, x, y);
                 passes.weights::<false>(first, third);
-                let count = part.len();
-                reciprocals[part].copy_from_slice(&passes.reciprocals[..count]);
             } else {
+                passes.run::<FMA, true>(shape, shape.ratios, x, y);
                 passes.weights::<true>(first, third);
             }
+            let count = part.len();
+            reciprocals[part].copy_from_slice(&passes.reciprocals[..count]);
         }
     }
 
@@ -76,19 +78,30 @@ impl Pixels {
         self.reciprocals[lanes].fill(1.0);
     }
 
-    /// Returns edge numbers and reciprocals of at most [`CHUNK`] lanes. Not by calls of a function: compilers do not inline long closures, and what
+    /// Returns edge numbers and reciprocals of at most [`CHUNK`] lanes; those beside the triangle do not count. Not by calls of a function: compilers do not inline long closures, and what
     /// is not inlined lacks the caller's instruction set.
     #[inline(always)]
-    pub(crate) fn part(&mut self, shape: &Shape, ratios: Option<[f64; 3]>, lanes: Range<usize>) -> &Passes {
-        self.passes.run(shape, ratios, &self.x[lanes.clone()], &self.y[lanes]);
+    pub(crate) fn part<const FMA: bool>(
+        &mut self,
+        shape: &Shape,
+        ratios: Option<[f64; 3]>,
+        lanes: Range<usize>,
+    ) -> &Passes {
+        self.passes.run::<FMA, true>(shape, ratios, &self.x[lanes.clone()], &self.y[lanes]);
         &self.passes
     }
 }
 
 impl Passes {
-    /// Computes edge numbers and reciprocals of lanes at these columns and rows.
+    /// Computes edge numbers and reciprocals of lanes at these columns and rows. `COVERED` as in [`weights`](Self::weights).
     #[inline(always)]
-    fn run(&mut self, shape: &Shape, ratios: Option<[f64; 3]>, x: &[f64], y: &[f64]) {
+    fn run<const FMA: bool, const COVERED: bool>(
+        &mut self,
+        shape: &Shape,
+        ratios: Option<[f64; 3]>,
+        x: &[f64],
+        y: &[f64],
+    ) {
         let lanes = x.len();
         let Passes { edges: [e0, e1, e2], sums, reciprocals } = self;
         let (e0, e1, e2, y) = (&mut e0[..lanes], &mut e1[..lanes], &mut e2[..lanes], &y[..lanes]);
@@ -96,27 +109,27 @@ impl Passes {
         match (ratios, shape.reciprocal) {
             (None, Some(reciprocal)) => {
                 for n in 0..lanes {
-                    [e0[n], e1[n], e2[n]] = shape.edges(x[n], y[n]);
+                    [e0[n], e1[n], e2[n]] = shape.edges::<FMA>(x[n], y[n]);
                 }
                 reciprocals.fill(reciprocal);
                 return;
             }
             (None, None) => {
                 for n in 0..lanes {
-                    [e0[n], e1[n], e2[n]] = edge_numbers(shape.edges(x[n], y[n]), None);
+                    [e0[n], e1[n], e2[n]] = edge_numbers(shape.edges::<FMA>(x[n], y[n]), None);
                 }
             }
             (Some(ratios), _) => {
                 for n in 0..lanes {
-                    [e0[n], e1[n], e2[n]] = edge_numbers(shape.edges(x[n], y[n]), Some(ratios));
+                    [e0[n], e1[n], e2[n]] = edge_numbers(shape.edges::<FMA>(x[n], y[n]), Some(ratios));
                 }
             }
         }
         for n in 0..lanes {
-            sums[n] = f64::sum_of_edges([e0[n], e1[n], e2[n]]);
+            sums[n] = f64::sum_of_edges::<COVERED>([e0[n], e1[n], e2[n]]);
         }
         for n in 0..lanes {
-            reciprocals[n] = sums[n].reciprocal();
+            reciprocals[n] = sums[n].reciprocal::<COVERED>();
         }
     }
 
@@ -128,8 +141,7 @@ impl Passes {
         let (e0, e1, e2) = (&e0[..lanes], &e1[..lanes], &e2[..lanes]);
         let (reciprocals, third) = (&reciprocals[..lanes], &mut third[..lanes]);
         for n in 0..lanes {
-            let [b0, _, b2] = completed::<f64, COVERED>(shares([e0[n], e1[n], e2[n]], reciprocals[n]));
-            (first[n], third[n]) = (b0, b2);
+            [first[n], third[n]] = outer_weights::<f64, COVERED>(shares([e0[n], e1[n], e2[n]], reciprocals[n]));
         }
     }
 }
@@ -171,7 +183,7 @@ mod tests {
                     count += 1;
                 }
             }
-            pixels.weigh(&shape, 0..count, around);
+            pixels.weigh::<false>(&shape, 0..count, around);
             let ratios = shape.ratios.is_some().then(|| weights::ratios(w.map(Binary::new)));
             for n in 0..count {
                 let e = triangle.edges(pixels.x[n] as i64, pixels.y[n] as i64);

@@ -15,12 +15,20 @@ pub(crate) fn weigh(pixels: &Pixels, lanes: Range<usize>, [w0, w2]: &mut ColorWe
     let (b0, b2) = (&pixels.b[0][lanes.clone()], &pixels.b[1][lanes.clone()]);
     let (w0, w2) = (&mut w0[lanes.clone()], &mut w2[lanes]);
     for n in 0..w0.len() {
-        (w0[n], w2[n]) = (weight(256.0 * b0[n]), weight(256.0 * b2[n]));
+        (w0[n], w2[n]) = (fixed(b0[n]), fixed(b2[n]));
     }
     limit(w0, w2);
 }
 
-/// Returns the 16-bit weight of 256 b.
+/// Returns the floor of 256 b, limited. Beside 1 a double has 52 bits of fraction: all that a weight of at least 2^-28 has, and others are rounded to less than
+/// 1/256.
+#[inline(always)]
+fn fixed(b: f64) -> u16 {
+    const ONE: u64 = 0x3ff00;
+    (((1.0 + b).to_bits() >> 44) as u16).wrapping_sub(ONE as u16).cast_signed().clamp(0, 256) as u16
+}
+
+/// Returns the 16-bit weight of the floor of 256 b.
 #[inline(always)]
 pub(super) fn weight(b: f64) -> u16 {
     floor_within(b, 0.0, 256.0) as u16

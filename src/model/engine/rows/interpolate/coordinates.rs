@@ -3,7 +3,7 @@
 
 use super::depths::word;
 use super::{LaneWeights, quotient};
-use crate::engine::rows::lanes::{floor_of_quotient, larger, limited, smaller};
+use crate::engine::rows::lanes::{floor_of_quotient, larger, limited, nearest, smaller};
 use crate::engine::rows::sampling::facing::Facing;
 use crate::engine::rows::sampling::place::{FARTHEST, Place};
 use crate::engine::rows::sampling::sampler::{Sampler, Third};
@@ -67,10 +67,13 @@ impl Coordinates {
         match (self.kind, sampler.takes_quads()) {
             (Kind::Plane, false) => self.on_plane(sampler, weights, lanes.clone(), place),
             (Kind::Ratio, false) => self.divided(sampler, weights, lanes.clone(), place),
-            (Kind::Direction, false) => self.on_faces(sampler, weights, lanes.clone(), place),
-            (Kind::Direction, true) => {
-                self.on_faces(sampler, weights, lanes.clone(), place);
+            (Kind::Direction, false) => {
                 self.components(weights, lanes.clone(), place);
+                on_faces(sampler, lanes, place);
+            }
+            (Kind::Direction, true) => {
+                self.components(weights, lanes.clone(), place);
+                on_faces(sampler, lanes.clone(), place);
                 // Smaller levels take no more bits.
                 for (at, fine) in place.at.iter().zip(&mut place.fine) {
                     let (at, fine) = (&at[lanes.clone()], &mut fine[lanes.clone()]);
@@ -160,27 +163,7 @@ impl Coordinates {
         }
     }
 
-    /// TEX-12: the face of each lane, and the floors of where it samples on it.
-    #[inline(always)]
-    fn on_faces(&self, sampler: &Sampler, weights: LaneWeights<'_>, lanes: Range<usize>, place: &mut Place) {
-        let (bias, middle) = (sampler.bias(), 128.0 * f64::from(sampler.sides[0]));
-        let [x, y, z] = self.numbers;
-        let Place { at: [u, v], images, .. } = place;
-        let (u, v, images) = (&mut u[lanes.clone()], &mut v[lanes.clone()], &mut images[lanes.clone()]);
-        let weights = weights.lanes(lanes.len());
-        for n in 0..lanes.len() {
-            let direction = [weights.at(&x, n), weights.at(&y, n), weights.at(&z, n)];
-            let facing = Facing::new(direction);
-            let [s, t, m] = facing.components(direction);
-            images[n] = facing.number() as i32 as u32;
-            // The zero vector has the coordinates 0.
-            let (middle, by) = if m > 0.0 { (middle, m) } else { (0.0, 1.0) };
-            u[n] = limited(middle + (middle * s / by).floor()) - bias;
-            v[n] = limited(middle + (middle * t / by).floor()) - bias;
-        }
-    }
-
-    /// Keeps s, t and q, or a direction, for quads.
+    /// Computes s, t and q, or a direction.
     #[inline(always)]
     fn components(&self, weights: LaneWeights<'_>, lanes: Range<usize>, place: &mut Place) {
         for (number, out) in self.numbers.iter().zip(&mut place.direction) {
@@ -207,5 +190,24 @@ impl Coordinates {
                 out[n] = smaller(larger(floor, -FARTHEST), FARTHEST);
             }
         }
+    }
+}
+
+/// TEX-12: the face of each lane, and the floors of where it samples on it, from its direction.
+#[inline(always)]
+fn on_faces(sampler: &Sampler, lanes: Range<usize>, place: &mut Place) {
+    let (bias, middle) = (sampler.bias(), 128.0 * f64::from(sampler.sides[0]));
+    let Place { at: [u, v], images, direction: [x, y, z], .. } = place;
+    let (u, v, images) = (&mut u[lanes.clone()], &mut v[lanes.clone()], &mut images[lanes.clone()]);
+    let (x, y, z) = (&x[lanes.clone()], &y[lanes.clone()], &z[lanes.clone()]);
+    for n in 0..lanes.len() {
+        let direction = [x[n], y[n], z[n]];
+        let facing = Facing::new(direction);
+        let [s, t, m] = facing.components(direction);
+        images[n] = nearest(facing.number()) as u32;
+        // The zero vector has the coordinates 0.
+        let (middle, by) = if m > 0.0 { (middle, m) } else { (0.0, 1.0) };
+        u[n] = limited(middle + (middle * s / by).floor()) - bias;
+        v[n] = limited(middle + (middle * t / by).floor()) - bias;
     }
 }

@@ -38,17 +38,14 @@ impl Vertices {
     #[inline(always)]
     fn depth(&self, e: [f64; 3], reciprocal: f64) -> f64 {
         let ([z0, z1, z2], [d10, d20, d21]) = (self.z, self.differences);
-        let [x0, x1, x2] = [e[0].exponent(), e[1].exponent(), e[2].exponent()];
-        let second = (x1 >= x0) & (x1 >= x2);
-        let first = !second & (x0 >= x2);
-        // The two others: 0 and 2, 1 and 2, or 0 and 1. One choice at a time, because compilers turn nested ones into branches.
-        let (one, other) = (if first { e[1] } else { e[0] }, if first | second { e[2] } else { e[1] });
-        let by_one = if first { d10 } else { -d20 };
-        let by_one = if second { -d10 } else { by_one };
-        let by_other = if first { d20 } else { -d21 };
-        let by_other = if second { d21 } else { by_other };
-        let z = if first { z0 } else { z2 };
-        let z = if second { z1 } else { z };
+        let [x0, x1, x2] = [e[0].exponent::<true>(), e[1].exponent::<true>(), e[2].exponent::<true>()];
+        let second = !f64::is_above(x0, x1) & !f64::is_above(x2, x1);
+        let first = !second & !f64::is_above(x2, x0);
+        // The two others: 0 and 2, 1 and 2, or 0 and 1.
+        let (one, other) = (e[1].or(first, e[0]), e[2].or(first | second, e[1]));
+        let by_one = (-d10).or(second, d10.or(first, -d20));
+        let by_other = d21.or(second, d20.or(first, -d21));
+        let z = z1.or(second, z0.or(first, z2));
         let (one, other) = ((one * reciprocal).cut(), (other * reciprocal).cut());
         f64::sum_of_products([[one, by_one], [1.0, z], [other, by_other]])
     }
@@ -69,7 +66,7 @@ fn rest(a: f64, b: f64) -> f64 {
 
 /// Computes the depths of lanes.
 #[inline(always)]
-pub(crate) fn depths(
+pub(crate) fn depths<const FMA: bool>(
     context: &TriangleContext<'_>,
     shape: &Shape,
     lanes: Range<usize>,
@@ -83,10 +80,10 @@ pub(crate) fn depths(
     for first in lanes.clone().step_by(CHUNK) {
         let part = first..(first + CHUNK).min(lanes.end);
         let found = &mut found[..part.len()];
-        let Passes { edges: [e0, e1, e2], reciprocals, .. } = pixels.part(shape, ratios, part.clone());
+        let Passes { edges: [e0, e1, e2], reciprocals, .. } = pixels.part::<FMA>(shape, ratios, part.clone());
         if ratios.is_some() {
             for n in 0..found.len() {
-                found[n] = depth::w_of_shares(shares([e0[n], e1[n], e2[n]], reciprocals[n]), w, rest);
+                found[n] = depth::w_of_shares::<_, true>(shares([e0[n], e1[n], e2[n]], reciprocals[n]), w, rest);
             }
         } else {
             for n in 0..found.len() {
@@ -149,7 +146,7 @@ mod tests {
         for z in ends.iter().flat_map(|a| ends.iter().flat_map(move |b| ends.map(|c| [*a, *b, c]))) {
             for e in edges {
                 let numbers = edge_numbers(e.map(f64::from_edge), None);
-                let found = Vertices::new(z).depth(numbers, f64::sum_of_edges(numbers).reciprocal());
+                let found = Vertices::new(z).depth(numbers, f64::sum_of_edges::<true>(numbers).reciprocal::<true>());
                 let exact = depth::interpolate(e, z);
                 assert_eq!(found, exact.mantissa as f64 * 2_f64.powi(exact.exponent as i32), "{z:?} {e:?}");
             }

@@ -48,7 +48,7 @@ impl<'a> LaneWeights<'a> {
     /// Returns a number in a lane.
     #[inline(always)]
     fn at(&self, number: &Linear<f64>, n: usize) -> f64 {
-        number.at([self.first[n], 0.0, self.third[n]])
+        number.at([self.first[n], self.third[n]])
     }
 
     /// Writes a number in each lane.
@@ -59,7 +59,7 @@ impl<'a> LaneWeights<'a> {
     fn number(self, number: &Linear<f64>, out: &mut [f64]) {
         let (weights, number) = (self.lanes(out.len()), *number);
         let Linear { second, first, third } = number;
-        let [power, a, b] = [second, first, third].map(|n| n.abs().exponent());
+        let [power, a, b] = [second, first, third].map(|n| n.abs().exponent::<true>());
         if weights.are_covered && second != 0.0 && power >= larger(a, b) {
             // Steps of the last of 24 bits.
             let unit = power * (1.0 / f64::from(1 << 23));

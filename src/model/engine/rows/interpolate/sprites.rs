@@ -4,7 +4,7 @@
 
 use crate::engine::context::TriangleContext;
 use crate::engine::rows::geometry::weights::Pixels;
-use crate::engine::rows::lanes::nearest;
+use crate::engine::rows::lanes::{Run, nearest};
 use crate::engine::rows::sampling::place::Place;
 use crate::engine::rows::sampling::sampler::Sampler;
 use crate::raster::stroke::{Figure, sprite_coordinate};
@@ -16,13 +16,46 @@ const SIDE: usize = 128;
 /// Places of a point within its pixel, along an axis.
 const PHASES: usize = 16;
 
+/// Columns or rows that are copied at a time.
+const WIDTH: usize = 8;
+
+/// What the coordinates of columns or rows follow from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Axis {
+    /// The first column or row, after that of the point.
+    start: i32,
+    count: i32,
+    /// The place of the point within its pixel.
+    phase: usize,
+    /// The point's size.
+    size: u16,
+    /// Number of texels of the image.
+    side: u32,
+    /// Fraction bits of coordinates, and what is taken off them.
+    bits: u32,
+    bias: i32,
+}
+
 /// Coordinates of the columns or rows of a point.
 #[derive(Clone, Copy, Debug)]
 struct Coordinates {
-    /// The first column or row after that of the point, their number, the point's size, that of the image, and how the sampler reads them.
-    key: [i32; 6],
+    axis: Option<Axis>,
     /// In 1/65536 texel if quads are taken, otherwise as [`Place::at`] has them.
-    values: [f64; SIDE],
+    values: [i32; SIDE + WIDTH],
+}
+
+impl Coordinates {
+    /// Sets them for an axis.
+    fn set(&mut self, axis: Axis) {
+        if self.axis.replace(axis) == Some(axis) {
+            return;
+        }
+        let Axis { start, count, phase, size, side, bits, bias } = axis;
+        for (out, n) in self.values.iter_mut().zip(start..start + count) {
+            let d = i64::from(16 * n + 8) - phase as i64;
+            *out = sprite_coordinate(d, size.into(), side.into(), bits.into()) as i32 - bias;
+        }
+    }
 }
 
 /// The coordinates that a point gives to a sampler.
@@ -44,7 +77,7 @@ impl Sprite {
         self.is_set = sampler.is_some();
         let Some(sampler) = sampler else { return };
         if self.coordinates.is_empty() {
-            self.coordinates = vec![[Coordinates { key: [0; 6], values: [0.0; SIDE] }; PHASES]; 2];
+            self.coordinates = vec![[Coordinates { axis: None, values: [0; SIDE + WIDTH] }; PHASES]; 2];
         }
         let (at, size) = (context.corners()[1].position, draw.assembly.size_of(context.number));
         let (bits, bias) = if sampler.takes_quads() { (16, 0) } else { (8, sampler.bias()) };
@@ -53,56 +86,57 @@ impl Sprite {
             let (first, end) = (first & !1, (end + 1) & !1);
             let (pixel, phase) = (at[axis].div_euclid(PHASES as i32), at[axis].rem_euclid(PHASES as i32));
             (self.first[axis], self.phase[axis]) = (first as f64, phase as usize);
-            let (side, start) = (sampler.sides[axis], first as i32 - pixel);
-            let key = [start, (end - first) as i32, size.into(), side as i32, bits, bias];
-            let coordinates = &mut self.coordinates[axis][phase as usize];
-            if coordinates.key == key {
-                continue;
-            }
-            coordinates.key = key;
-            for (out, n) in coordinates.values.iter_mut().zip(start..start + key[1]) {
-                let d = i64::from(16 * n + 8 - phase);
-                *out = (sprite_coordinate(d, size.into(), side.into(), bits.into()) - i64::from(bias)) as f64;
-            }
+            let (start, count, phase) = (first as i32 - pixel, (end - first) as i32, phase as usize);
+            let of = Axis { start, count, phase, size, side: sampler.sides[axis], bits, bias };
+            self.coordinates[axis][phase].set(of);
         }
     }
 
-    /// Computes where lanes sample. Returns whether the sampler has coordinates of a point.
+    /// Returns whether a sampler has the coordinates of the point.
+    #[inline(always)]
+    pub(crate) fn applies(&self, sampler: &Sampler) -> bool {
+        self.is_set && sampler.is_sprite
+    }
+
+    /// Computes where lanes sample, whose pixels are those of the runs.
     #[inline(always)]
     pub(crate) fn compute_places(
         &self,
         sampler: &Sampler,
         pixels: &Pixels,
         lanes: Range<usize>,
+        runs: &[Run],
         place: &mut Place,
-    ) -> bool {
-        if !(self.is_set && sampler.is_sprite) {
-            return false;
-        }
-        let takes_quads = sampler.takes_quads();
-        for (axis, of) in [&pixels.x, &pixels.y].into_iter().enumerate() {
-            let coordinates = &self.coordinates[axis][self.phase[axis]].values;
-            let (first, of) = (self.first[axis], &of[lanes.clone()]);
-            // Lanes without a pixel may lie anywhere.
-            let coordinate = |n: f64| coordinates[nearest(n - first) as usize % SIDE];
-            let (at, fine) = (&mut place.at[axis][lanes.clone()], &mut place.fine[axis][lanes.clone()]);
-            if takes_quads {
-                for n in 0..of.len() {
-                    fine[n] = coordinate(of[n]);
+    ) {
+        let [columns, rows] = [0, 1].map(|axis| &self.coordinates[axis][self.phase[axis]].values);
+        // Lanes without a pixel may lie anywhere.
+        let index = |n: f64, axis: usize| nearest(n - self.first[axis]) as usize % SIDE;
+        if !sampler.takes_quads() {
+            let [u, v] = &mut place.at;
+            for run in runs {
+                let (lane, count) = (run.lane(), run.count().next_multiple_of(WIDTH));
+                let from = columns[index(pixels.x[lane], 0)..].as_chunks::<WIDTH>().0;
+                // Whole vectors, of which the next run overwrites what is too much.
+                for (out, from) in u[lane..lane + count].as_chunks_mut::<WIDTH>().0.iter_mut().zip(from) {
+                    *out = *from;
                 }
-            } else {
-                for n in 0..of.len() {
-                    at[n] = nearest(coordinate(of[n]));
+                let row = rows[index(pixels.y[lane], 1)];
+                for out in v[lane..lane + count].as_chunks_mut::<WIDTH>().0 {
+                    *out = [row; WIDTH];
                 }
             }
+            return;
         }
-        if takes_quads {
-            // Nothing is divided, and nothing lies behind the viewer.
-            place.direction[2][lanes.clone()].fill(1.0);
+        for (axis, (of, values)) in [(&pixels.x, columns), (&pixels.y, rows)].into_iter().enumerate() {
+            let (of, fine) = (&of[lanes.clone()], &mut place.fine[axis][lanes.clone()]);
+            for n in 0..of.len() {
+                fine[n] = values[index(of[n], axis)].into();
+            }
         }
+        // Nothing is divided, and nothing lies behind the viewer.
+        place.direction[2][lanes.clone()].fill(1.0);
         if sampler.pairs > 0 {
             place.settle(lanes, sampler.bias());
         }
-        true
     }
 }

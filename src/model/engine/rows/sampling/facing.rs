@@ -3,7 +3,7 @@
 
 use crate::engine::rows::lanes::larger;
 use crate::texture::cube::Face;
-use std::ops::Neg;
+use std::ops::{Add, Neg};
 
 /// TEX-12: the face that a direction meets.
 #[derive(Clone, Copy)]
@@ -37,11 +37,12 @@ impl Facing {
         [s, t, turned(if self.on_x { x } else { major })]
     }
 
-    /// Returns the number of the face, as a float.
+    /// Returns the number of the face, as a float of the direction's type: vectors of other widths take longer.
     #[inline(always)]
-    pub(crate) fn number(self) -> f32 {
-        let axis = if self.on_y { Face::PositiveY as u32 as f32 } else { Face::PositiveZ as u32 as f32 };
-        let axis = if self.on_x { Face::PositiveX as u32 as f32 } else { axis };
-        axis + if self.is_negative { 1.0 } else { 0.0 }
+    pub(crate) fn number<T: Copy + From<f32> + Add<Output = T>>(self) -> T {
+        let [x, y, z] = [Face::PositiveX, Face::PositiveY, Face::PositiveZ].map(|face| T::from(face as u32 as f32));
+        let axis = if self.on_y { y } else { z };
+        let axis = if self.on_x { x } else { axis };
+        axis + if self.is_negative { T::from(1.0) } else { T::from(0.0) }
     }
 }

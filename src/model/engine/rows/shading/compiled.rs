@@ -53,10 +53,4 @@ impl CompiledDraw {
         });
         (primary & self.read[0]) | (secondary & self.read[1]) != 0
     }
-
-    /// Returns whether something besides colours and depths follows from weights.
-    #[inline(always)]
-    pub(crate) fn weighs(&self) -> bool {
-        self.shader.is_some() || self.fog.is_some() || !self.samplers.is_empty()
-    }
 }
