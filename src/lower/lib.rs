@@ -30,7 +30,7 @@ mod whole;
 
 pub use generic::{Generic, Sources, with_all_levels};
 pub use input::{Input, Local, Weight};
-pub use language::{Draw, Language, Named, Shaders};
+pub use language::{Draw, Language, NamedFunction, Shaders};
 pub use pixel::{Function, Options, Result, Textures};
 pub use setup::Setup;
 pub use triangle::{Attribute, Field, Part};

@@ -12,7 +12,7 @@ use ninebit::place::Span;
 
 use super::error::SceneError;
 use super::fields as source;
-use super::form::{Described, Form, Kind};
+use super::form::{Form, HasForm, Kind};
 use super::notation::{Notation, trim, word};
 use super::raw::Raw;
 use super::source::renamed;

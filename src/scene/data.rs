@@ -1,7 +1,7 @@
 //! Writes the text of a scene, or of a value of it, from plain data of another language.
 
 use super::fields as source;
-use super::form::{Described, Entry, Form, Kind};
+use super::form::{Entry, Form, HasForm, Kind};
 use super::notation::word;
 
 /// A value as dynamic languages have them.

@@ -2,9 +2,9 @@
 
 use std::ops::RangeInclusive;
 
-use super::form::{Described, Form, Kind};
+use super::form::{Form, HasForm, Kind};
 use super::raw::{Numbers, Raw};
-use super::reader::{Name, Reader, Valued, quoted};
+use super::reader::{Name, PlainValue, Reader, quoted};
 use super::source::{AlphaReference, ViewerWord};
 use super::wording::shorten;
 use ninebit::limits::Limits;
@@ -17,25 +17,25 @@ use ninebit_program::{finding, warning};
 const MAX_WORDS: usize = 9;
 
 /// A type whose values may be defaults.
-pub(super) trait Printed<'a>: Valued<'a> {
+pub(super) trait DefaultValue<'a>: PlainValue<'a> {
     /// Returns the value as a scene writes it.
     fn print(value: &Self::Value) -> String;
 }
 
-macro_rules! valued {
-    ($($type:ty => $value:ty: $read:path),+) => { $(impl<'a> Valued<'a> for $type {
+macro_rules! plain_values {
+    ($($type:ty => $value:ty: $read:path),+) => { $(impl<'a> PlainValue<'a> for $type {
         type Value = $value;
         fn value(reader: &mut Reader<'a>, raw: &Raw<'a, $type>) -> Option<$value> {
             $read(reader, raw)
         }
     }
-    impl<'a> Printed<'a> for $type {
+    impl<'a> DefaultValue<'a> for $type {
         fn print(value: &$value) -> String {
             value.to_string()
         }
     })+ };
 }
-valued!(
+plain_values!(
     bool => bool: Reader::read,
     u8 => u8: Reader::read,
     u32 => u32: Reader::read,
@@ -65,7 +65,7 @@ fn alpha_reference<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, AlphaReference>) -
     Some(byte)
 }
 
-impl<'a, T: Named> Valued<'a> for Name<T> {
+impl<'a, T: Named> PlainValue<'a> for Name<T> {
     type Value = T;
 
     fn value(reader: &mut Reader<'a>, raw: &Raw<'a, Self>) -> Option<T> {
@@ -73,13 +73,13 @@ impl<'a, T: Named> Valued<'a> for Name<T> {
     }
 }
 
-impl<'a, T: Named> Printed<'a> for Name<T> {
+impl<'a, T: Named> DefaultValue<'a> for Name<T> {
     fn print(value: &T) -> String {
         value.name().to_owned()
     }
 }
 
-impl<'a> Valued<'a> for ViewerWord {
+impl<'a> PlainValue<'a> for ViewerWord {
     type Value = Viewer;
 
     /// Reads `Local`, `Infinite`, or `Infinite(x, y, z)`.
@@ -96,7 +96,7 @@ impl<'a> Valued<'a> for ViewerWord {
     }
 }
 
-impl<'a> Printed<'a> for ViewerWord {
+impl<'a> DefaultValue<'a> for ViewerWord {
     fn print(value: &Viewer) -> String {
         match value {
             Viewer::Local => "Local".to_owned(),
@@ -121,7 +121,7 @@ pub(super) struct Field {
 }
 
 impl Field {
-    pub(super) fn new<T: Described>(name: &'static str, meaning: &'static str) -> Self {
+    pub(super) fn new<T: HasForm>(name: &'static str, meaning: &'static str) -> Self {
         let values = match T::form() {
             Form::Value(Kind::Choice(words)) if words.len() <= MAX_WORDS && words != ["false", "true"] => quoted(words),
             Form::Value(Kind::Whole { most: 255 }) => "0 to 255".to_owned(),
@@ -162,8 +162,8 @@ pub(super) fn limit(of: fn(&Limits) -> u32) -> u32 {
 macro_rules! read_field {
     ($field:ident $type:ty, [$(or $words:literal)?]) => {};
     ($field:ident $type:ty, [] $default:expr) => {
-        pub(crate) fn $field(&self, reader: &mut Reader<'a>) -> <$type as Valued<'a>>::Value {
-            self.$field.as_ref().and_then(|raw| Valued::value(reader, raw)).unwrap_or($default)
+        pub(crate) fn $field(&self, reader: &mut Reader<'a>) -> <$type as PlainValue<'a>>::Value {
+            self.$field.as_ref().and_then(|raw| PlainValue::value(reader, raw)).unwrap_or($default)
         }
     };
     ($field:ident $type:ty, [any] $default:expr) => {
@@ -177,9 +177,9 @@ macro_rules! read_field {
         }
     };
     ($field:ident $type:ty, [required value]) => {
-        pub(crate) fn $field(&self, reader: &mut Reader<'a>) -> Option<<$type as Valued<'a>>::Value> {
+        pub(crate) fn $field(&self, reader: &mut Reader<'a>) -> Option<<$type as PlainValue<'a>>::Value> {
             let raw = reader.required(&self.$field, stringify!($field), self.called, reader.range(self.opening), &self.faults)?;
-            Valued::value(reader, &raw)
+            PlainValue::value(reader, &raw)
         }
     };
     ($field:ident $type:ty, [required numbers $range:expr, $what:literal]) => {
@@ -237,20 +237,20 @@ macro_rules! read_field {
 pub(super) use read_field;
 
 /// Describes a field for the document as its declaration says.
-macro_rules! described_field {
+macro_rules! form_of_field {
     ($field:expr, $type:ty, []) => { $field };
     ($field:expr, $type:ty, [or $words:literal]) => { $field.or($words) };
-    ($field:expr, $type:ty, [] $default:expr) => { $field.written(&<$type as Printed<'_>>::print(&$default)) };
-    ($field:expr, $type:ty, [any] $default:expr) => { described_field!($field, $type, [] $default) };
+    ($field:expr, $type:ty, [] $default:expr) => { $field.written(&<$type as DefaultValue<'_>>::print(&$default)) };
+    ($field:expr, $type:ty, [any] $default:expr) => { form_of_field!($field, $type, [] $default) };
     ($field:expr, $type:ty, [required $($more:tt)*]) => { $field.or("required") };
     ($field:expr, $type:ty, [$(or $words:literal)? in $range:expr, $what:literal $(, $more:ident($said:expr))*]) => {
         $field.within(&$range)$(.or($words))?
     };
     ($field:expr, $type:ty, [in $range:expr, $what:literal $(, $more:ident($said:expr))*] $default:expr) => {
-        described_field!($field.within(&$range), $type, [] $default)
+        form_of_field!($field.within(&$range), $type, [] $default)
     };
     ($field:expr, $type:ty, [up to $limit:ident, $code:literal, $what:literal] $default:expr) => {
-        described_field!($field.up_to(limit(|limits| limits.$limit)), $type, [] $default)
+        form_of_field!($field.up_to(limit(|limits| limits.$limit)), $type, [] $default)
     };
     ($field:expr, $type:ty, [$(or $words:literal)? numbers $range:expr, $what:literal]) => { $field$(.or($words))? };
     ($field:expr, $type:ty, [numbers $range:expr, $what:literal] $default:expr) => {
@@ -260,4 +260,4 @@ macro_rules! described_field {
     ($field:expr, $type:ty, [one of $what:literal: $($word:literal),+]) => { $field.one_of(&[$($word),+]) };
     ($field:expr, $type:ty, [color] $default:expr) => { $field.written(&listed(&$default)) };
 }
-pub(super) use described_field;
+pub(super) use form_of_field;

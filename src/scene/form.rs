@@ -55,16 +55,16 @@ pub(super) fn field_of(fields: &[Entry], word: &str) -> Option<String> {
 }
 
 /// A type whose values have a known form.
-pub(super) trait Described {
+pub(super) trait HasForm {
     /// Returns the form of the type's values.
     fn form() -> Form;
 }
 
-macro_rules! described {
-    ($($($type:ty),+ => $form:expr;)+) => { $($(impl Described for $type { fn form() -> Form { $form } })+)+ };
+macro_rules! forms {
+    ($($($type:ty),+ => $form:expr;)+) => { $($(impl HasForm for $type { fn form() -> Form { $form } })+)+ };
 }
-pub(super) use described;
-described! {
+pub(super) use forms;
+forms! {
     String => Form::Value(Kind::Text);
     u8 => Form::Value(Kind::Whole { most: 255 });
     u32 => Form::Value(Kind::Whole { most: u32::MAX });
@@ -73,22 +73,22 @@ described! {
     Few<f32> => Form::Value(Kind::Numbers);
     Vec<u32>, ReservedValue => Form::Value(Kind::Other);
 }
-impl<T: Named> Described for Name<T> {
+impl<T: Named> HasForm for Name<T> {
     fn form() -> Form {
         Form::Value(Kind::Choice(T::NAMES))
     }
 }
-impl<T: Described> Described for Vec<Raw<'_, T>> {
+impl<T: HasForm> HasForm for Vec<Raw<'_, T>> {
     fn form() -> Form {
         Form::List(T::form)
     }
 }
-impl<T: Described> Described for Entries<'_, T> {
+impl<T: HasForm> HasForm for Entries<'_, T> {
     fn form() -> Form {
         Form::Table(T::form)
     }
 }
-impl<T: Described> Described for Tuple<'_, T> {
+impl<T: HasForm> HasForm for Tuple<'_, T> {
     fn form() -> Form {
         Form::Tuple(T::form)
     }

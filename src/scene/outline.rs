@@ -5,7 +5,7 @@
 
 use super::fields as source;
 pub use super::form::Kind;
-use super::form::{Described, Entry, Form, described};
+use super::form::{Entry, Form, HasForm, forms};
 use super::notation::Notation;
 use super::raw::Raw;
 use super::source::renamed;
@@ -146,7 +146,7 @@ fn values(fields: impl Iterator<Item = Entry>) -> Vec<(&'static str, Kind)> {
     fields.filter_map(value).collect()
 }
 
-described! {
+forms! {
     source::Color => Form::Value(Kind::Color);
     source::VertexSource => Form::Variant(&[
         ("Window", source::VertexList::form),

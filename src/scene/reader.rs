@@ -14,7 +14,7 @@ use super::diagnostic::{Diagnostic, needs_nv2a};
 use super::names::{Names, Targets, Textures};
 use super::notation::Notation;
 use super::raw::{Entries, Few, Numbers, Raw, ReservedValue, Tuple};
-use super::source::{Expected, Mismatch};
+use super::source::{FromSource, Mismatch};
 use super::wording::{closest, describe, shorten, twice, words};
 use ninebit::legality::texture::TextureChecks;
 use ninebit::limits::Limits;
@@ -39,7 +39,7 @@ pub(super) const FINITE: &str = "NB0207";
 pub(super) const COUNT: &str = "NB0211";
 
 /// A type whose values can be read without the context of a draw.
-pub(super) trait Valued<'a>: Sized {
+pub(super) trait PlainValue<'a>: Sized {
     /// What a value is read as.
     type Value;
 
@@ -148,7 +148,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads a value that is well formed. Returns `None` after recording what is wrong.
-    pub(super) fn read<T: Expected<'a>>(&mut self, raw: &Raw<'a, T>) -> Option<T> {
+    pub(super) fn read<T: FromSource<'a>>(&mut self, raw: &Raw<'a, T>) -> Option<T> {
         let said = |reader: &Self, mismatch: &Mismatch<'a>| {
             let finding = reader.mismatch(raw.text, mismatch, T::EXPECTED);
             match T::meant(raw.text).filter(|_| matches!(mismatch, Mismatch::Kind)) {
@@ -172,12 +172,12 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads a value if possible; records nothing.
-    pub(super) fn attempt<T: Expected<'a>>(&self, text: &'a str) -> Option<T> {
+    pub(super) fn attempt<T: FromSource<'a>>(&self, text: &'a str) -> Option<T> {
         T::read(&self.notation, text).ok()
     }
 
     /// Reads a value that needs no further context. Returns `None` after recording what is wrong.
-    pub(super) fn value<T: Valued<'a>>(&mut self, raw: &Raw<'a, T>) -> Option<T::Value> {
+    pub(super) fn value<T: PlainValue<'a>>(&mut self, raw: &Raw<'a, T>) -> Option<T::Value> {
         T::value(self, raw)
     }
 
@@ -347,7 +347,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads a number in `range`; `said` adds to the finding that it is outside.
-    pub(super) fn within<T: Valued<'a, Value = T> + PartialOrd + Display>(
+    pub(super) fn within<T: PlainValue<'a, Value = T> + PartialOrd + Display>(
         &mut self,
         raw: &Raw<'a, T>,
         what: &str,

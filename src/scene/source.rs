@@ -20,7 +20,7 @@ pub(super) enum Mismatch<'a> {
 }
 
 /// A type that can be read from a well-formed text.
-pub(super) trait Expected<'a>: Sized {
+pub(super) trait FromSource<'a>: Sized {
     /// Description in the singular, with an article, for "expected ...".
     const EXPECTED: &'static str;
 
@@ -43,7 +43,7 @@ pub(super) trait Expected<'a>: Sized {
 
 macro_rules! expected {
     ($(<$life:lifetime $(, $of:ident)*> $type:ty: $expected:literal, |$notation:pat_param, $text:ident| $read:expr;)+) => {
-        $(impl<$life $(, $of)*> Expected<$life> for $type {
+        $(impl<$life $(, $of)*> FromSource<$life> for $type {
             const EXPECTED: &'static str = $expected;
             fn read($notation: &Notation<$life>, $text: &$life str) -> Result<Self, Mismatch<$life>> {
                 $read
@@ -76,7 +76,7 @@ expected! {
     };
 }
 
-impl<'a> Expected<'a> for bool {
+impl<'a> FromSource<'a> for bool {
     const EXPECTED: &'static str = "`true` or `false`";
 
     fn read(_: &Notation<'a>, text: &'a str) -> Result<Self, Mismatch<'a>> {
@@ -177,7 +177,7 @@ macro_rules! source {
 
             /// Returns the descriptions of the fields.
             fn described() -> Vec<Field> {
-                vec![$(described_field!(
+                vec![$(form_of_field!(
                     Field::new::<$type>(stringify!($field), concat!($($meaning),*)), $type, [$($($read)*)?] $($default)?
                 )),*]
             }
@@ -196,12 +196,12 @@ macro_rules! source {
                     .filter_map(|(name, text)| Some((name, text?)))
             }
         }
-        impl<'a> Described for $name<'a> {
+        impl<'a> HasForm for $name<'a> {
             fn form() -> Form {
-                Form::Fields(|| vec![$((stringify!($field), <$type as Described>::form)),*])
+                Form::Fields(|| vec![$((stringify!($field), <$type as HasForm>::form)),*])
             }
         }
-        impl<'a> Expected<'a> for $name<'a> {
+        impl<'a> FromSource<'a> for $name<'a> {
             const EXPECTED: &'static str = "fields in parentheses, `(field: value, ...)`";
             fn read(notation: &Notation<'a>, text: &'a str) -> Result<Self, Mismatch<'a>> {
                 const NAMES: &[&str] = &[$(stringify!($field)),*];
@@ -215,7 +215,7 @@ macro_rules! source {
                 &self.faults
             }
             fn meant(text: &str) -> Option<String> {
-                form::field_of(&[$((stringify!($field), <$type as Described>::form)),*], text)
+                form::field_of(&[$((stringify!($field), <$type as HasForm>::form)),*], text)
             }
         }
     )+ };

@@ -70,7 +70,11 @@ pub(crate) fn lowered(scene: &Scene, number: usize, policies: Policies, language
     let draw = &scene.draws[number];
     let function = Function::of_draw(scene, draw, &plan.draws()[number], &options);
     let about = format!("draw {number} `{}`", ninebit::shown::name(&draw.name));
-    Ok(language.print(&[ninebit_lower::Named { name: format!("ninebit_draw{number}"), about, function: &function }]))
+    Ok(language.print(&[ninebit_lower::NamedFunction {
+        name: format!("ninebit_draw{number}"),
+        about,
+        function: &function,
+    }]))
 }
 
 /// Returns the draw's program in the combiner language with one part changed. `path` is as in [`value`].

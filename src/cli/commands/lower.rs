@@ -5,7 +5,9 @@ use super::*;
 use ninebit::plan::PlanOptions;
 use ninebit::state::Named as _;
 use ninebit_files::output::write_below;
-use ninebit_lower::{self as lower, Function, Generic, Language, Named, Options, Setup, Shaders, Sources, Textures};
+use ninebit_lower::{
+    self as lower, Function, Generic, Language, NamedFunction, Options, Setup, Shaders, Sources, Textures,
+};
 use ninebit_program::{registers, text};
 use ninebit_scene::register_words;
 
@@ -262,6 +264,7 @@ fn functions(
         (format!("ninebit_draw{number}"), about, function)
     };
     let made: Vec<(String, String, Function)> = draws.iter().map(made).collect();
-    let named = made.iter().map(|(name, about, function)| Named { name: name.clone(), about: about.clone(), function });
+    let named =
+        made.iter().map(|(name, about, function)| NamedFunction { name: name.clone(), about: about.clone(), function });
     Ok(language.print(&named.collect::<Vec<_>>()))
 }

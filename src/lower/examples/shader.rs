@@ -3,7 +3,7 @@
 //! `cargo run -p ninebit-lower --example shader`
 
 use ninebit::state::{Combiners, Component, GeneralStage, Portion, Register};
-use ninebit_lower::{Function, Language, Named, Options};
+use ninebit_lower::{Function, Language, NamedFunction, Options};
 
 fn main() {
     let rgb = Portion { ab_output: Register::Spare0, ..Portion::idle(Component::Rgb) };
@@ -11,6 +11,7 @@ fn main() {
     let stage = GeneralStage { rgb, ..GeneralStage::default() };
     let program = Combiners { stages: vec![stage], ..Combiners::default() };
     let function = Function::of_program(&program, &Options::default());
-    let named = Named { name: "shade".to_string(), about: "texture times colour".to_string(), function: &function };
+    let named =
+        NamedFunction { name: "shade".to_string(), about: "texture times colour".to_string(), function: &function };
     println!("{}", Language::Glsl.print(&[named]));
 }

@@ -44,7 +44,7 @@ static inline int32_t ninebit_greatest(int32_t a, int32_t b) { return a > b ? a 
 ";
 
 impl Syntax for C99 {
-    fn head(&self, functions: &[Named<'_>]) -> String {
+    fn head(&self, functions: &[NamedFunction<'_>]) -> String {
         let mut out = format!("/* {}\n   {}\n   {} */\n#include <stdint.h>\n\n", ROUNDING[0], ROUNDING[1], ROUNDING[2]);
         out.push_str(PIXEL);
         if reads_constants(functions) {
@@ -53,7 +53,7 @@ impl Syntax for C99 {
         out + HELPERS
     }
 
-    fn opening(&self, named: &Named<'_>) -> String {
+    fn opening(&self, named: &NamedFunction<'_>) -> String {
         let constants = if named.function.uniform { ", const struct ninebit_constants *constants" } else { "" };
         let (name, about) = (&named.name, comment(&named.about));
         let given = format!("const struct ninebit_pixel *pixel{constants}");

@@ -5,7 +5,7 @@ use super::*;
 pub(super) struct Glsl;
 
 impl Syntax for Glsl {
-    fn head(&self, functions: &[Named<'_>]) -> String {
+    fn head(&self, functions: &[NamedFunction<'_>]) -> String {
         let mut out = ROUNDING.map(|line| format!("// {line}\n")).concat();
         out.push_str("// For GLSL 3.30 and GLSL ES 3.00: the line that tells the version stands above.\nprecision highp int;\n\n");
         out.push_str("// What one pixel brings. Colours are R, G, B, A. A function reads what it needs; the rest may be anything.\n");
@@ -33,7 +33,7 @@ impl Syntax for Glsl {
         out
     }
 
-    fn opening(&self, named: &Named<'_>) -> String {
+    fn opening(&self, named: &NamedFunction<'_>) -> String {
         let constants = if named.function.uniform { ", NinebitConstants constants" } else { "" };
         let (name, about) = (&named.name, comment(&named.about));
         match named.function.result {

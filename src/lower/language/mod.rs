@@ -49,7 +49,7 @@ named! {
 
 /// A function with a name.
 #[derive(Debug)]
-pub struct Named<'f> {
+pub struct NamedFunction<'f> {
     /// Name: a letter, then letters, digits and underscores.
     pub name: String,
     /// Description in one line. Printing removes whatever would end a comment.
@@ -60,7 +60,7 @@ pub struct Named<'f> {
 
 impl Language {
     /// Prints a whole text: what all functions share, then the functions.
-    pub fn print(self, functions: &[Named<'_>]) -> String {
+    pub fn print(self, functions: &[NamedFunction<'_>]) -> String {
         let syntax = self.syntax();
         let mut out = syntax.head(functions);
         for named in functions {
@@ -88,9 +88,9 @@ impl Language {
 /// The syntax of a language, as far as languages differ.
 pub(crate) trait Syntax {
     /// Prints what stands before all functions.
-    fn head(&self, functions: &[Named<'_>]) -> String;
+    fn head(&self, functions: &[NamedFunction<'_>]) -> String;
     /// Prints the beginning of a function: its comment, name and parameters.
-    fn opening(&self, named: &Named<'_>) -> String;
+    fn opening(&self, named: &NamedFunction<'_>) -> String;
     /// Prints the end of a function that yields a fragment.
     fn fragment(&self, channels: [String; 4]) -> String;
     /// Prints the end of a function that yields a word, unless the fragment fails `test`.
@@ -141,7 +141,7 @@ pub(crate) trait Syntax {
 }
 
 /// Prints a whole function.
-fn function(syntax: &'static dyn Syntax, named: &Named<'_>) -> String {
+fn function(syntax: &'static dyn Syntax, named: &NamedFunction<'_>) -> String {
     let (lines, result) = (&named.function.lines, named.function.result);
     let test = match result {
         Result::Stored { test: Some(Test(_, operands)), .. } | Result::Pixel { test: Some(Test(_, operands)), .. } => {
@@ -449,7 +449,7 @@ impl<'f> Body<'f> {
 }
 
 /// Returns whether some functions have constants as inputs.
-fn reads_constants(functions: &[Named<'_>]) -> bool {
+fn reads_constants(functions: &[NamedFunction<'_>]) -> bool {
     functions.iter().any(|named| named.function.uniform)
 }
 

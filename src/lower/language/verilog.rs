@@ -20,14 +20,14 @@ pub(crate) fn port(kind: Kind, range: Range) -> String {
 }
 
 impl Syntax for Verilog {
-    fn head(&self, _functions: &[Named<'_>]) -> String {
+    fn head(&self, _functions: &[NamedFunction<'_>]) -> String {
         let lines = ROUNDING.map(|line| format!("// {line}\n")).concat();
         lines
             + "// Ports are what the pixel brings, as far as the module reads it: colours of 9 bits, of which textures alone are ever negative; weights\n\
                // of 256ths; words of 32 bits. Constants of the draw, where they are ports, are bytes in 9 bits.\n"
     }
 
-    fn opening(&self, named: &Named<'_>) -> String {
+    fn opening(&self, named: &NamedFunction<'_>) -> String {
         let inputs = named.function.inputs().into_iter();
         let mut ports: Vec<String> =
             inputs.map(|input| format!("input {} {}", port(input.kind(), input.range()), self.input(input))).collect();

@@ -5,7 +5,7 @@ use super::*;
 pub(super) struct Wgsl;
 
 impl Syntax for Wgsl {
-    fn head(&self, functions: &[Named<'_>]) -> String {
+    fn head(&self, functions: &[NamedFunction<'_>]) -> String {
         let mut out = ROUNDING.map(|line| format!("// {line}\n")).concat();
         out.push_str("\n// What one pixel brings. Colours are R, G, B, A. A function reads what it needs; the rest may be anything.\n");
         out.push_str("struct NinebitPixel {\n    primary: vec4<i32>,   // interpolated diffuse, 0 to 255\n");
@@ -38,7 +38,7 @@ impl Syntax for Wgsl {
         out
     }
 
-    fn opening(&self, named: &Named<'_>) -> String {
+    fn opening(&self, named: &NamedFunction<'_>) -> String {
         let constants = if named.function.uniform { ", constants: NinebitConstants" } else { "" };
         let (result, about) = match named.function.result {
             Result::Fragment(_) => ("vec4<i32>", "R, G, B, A of the fragment, 0 to 255"),

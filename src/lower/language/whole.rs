@@ -55,7 +55,7 @@ impl Language {
         for draw in draws {
             out.push_str(&whole.setup(draw));
             out.push('\n');
-            let named = Named { name: draw.name.clone(), about: draw.about.clone(), function: draw.function };
+            let named = NamedFunction { name: draw.name.clone(), about: draw.about.clone(), function: draw.function };
             out.push_str(&function(syntax, &named));
         }
         Some(out)

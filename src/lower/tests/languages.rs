@@ -22,7 +22,7 @@ use ninebit::plan::{Plan, PlanOptions};
 use ninebit::random::Random;
 use ninebit::state::{Policies, Scene};
 use ninebit_lower::code::{Kind, Test, run_changed, value_of};
-use ninebit_lower::{Function, Input, Language, Named, Options, Result, Textures};
+use ninebit_lower::{Function, Input, Language, NamedFunction, Options, Result, Textures};
 use ninebit_test_support::{random_program, random_scene};
 use proptest::strategy::{Strategy, ValueTree};
 use setting::{any_policies, bytes, compiler, drawing, python, runner, setting, works};
@@ -153,9 +153,11 @@ struct Batch<'f> {
 }
 
 impl Batch<'_> {
-    fn named(&self) -> Vec<Named<'_>> {
+    fn named(&self) -> Vec<NamedFunction<'_>> {
         let named = self.functions.iter().enumerate();
-        named.map(|(n, function)| Named { name: format!("case{n}"), about: format!("case {n}"), function }).collect()
+        named
+            .map(|(n, function)| NamedFunction { name: format!("case{n}"), about: format!("case {n}"), function })
+            .collect()
     }
 
     fn write(&self, name: &str, bytes: impl AsRef<[u8]>) {
@@ -295,7 +297,7 @@ impl Batch<'_> {
     /// Writes shaders, and runs the tool that renders or computes all rows of each.
     fn shaders(&self, language: Language) -> std::result::Result<(), Failed> {
         for (n, function) in self.functions.iter().enumerate() {
-            let named = Named { name: "shade".to_string(), about: format!("case {n}"), function };
+            let named = NamedFunction { name: "shade".to_string(), about: format!("case {n}"), function };
             let printed = language.print(&[named]);
             let constants = if function.uniform { ", constants" } else { "" };
             let glsl = language == Language::Glsl;

@@ -25,10 +25,10 @@ mod vertex_side;
 use std::fmt::Write;
 
 use super::field::*;
-use super::form::{self, Described, Form};
+use super::form::{self, Form, HasForm};
 use super::notation::Notation;
 use super::raw::{Entries, Numbers, Raw, ReservedValue, Tuple};
-use super::reader::{COUNT, FINITE, KIND, MISSING, Name, RANGE, Reader, TWICE, UNKNOWN, Valued, WORD};
+use super::reader::{COUNT, FINITE, KIND, MISSING, Name, PlainValue, RANGE, Reader, TWICE, UNKNOWN, WORD};
 pub(crate) use super::source::*;
 use ninebit::diagnostic::Diagnostic;
 use ninebit::state::{self, VertexColor};

@@ -8,7 +8,7 @@ use super::vertex::VertexData;
 use super::*;
 use crate::mesh::Mesh;
 use crate::names::{Definition, Index, State, Table};
-use crate::reader::{Entry, Valued};
+use crate::reader::{Entry, PlainValue};
 use ninebit::vertex::Rows;
 
 /// Longest chain of names that stand for other names.
@@ -47,7 +47,7 @@ impl Index {
 }
 
 /// A type whose values may be defined in a table and used by name.
-pub(crate) trait Tabled<'a>: Sized + 'static {
+pub(crate) trait NamedValue<'a>: Sized + 'static {
     /// What a value of the type is lowered to.
     type Meaning: Clone + 'static;
 
@@ -58,7 +58,7 @@ pub(crate) trait Tabled<'a>: Sized + 'static {
     fn table<'r>(reader: &'r mut Reader<'a>) -> &'r mut Table<'a>;
 }
 
-impl<'a, S: Tabled<'a>> Valued<'a> for S {
+impl<'a, S: NamedValue<'a>> PlainValue<'a> for S {
     type Value = S::Meaning;
 
     fn value(reader: &mut Reader<'a>, raw: &Raw<'a, S>) -> Option<S::Meaning> {
@@ -71,7 +71,7 @@ impl<'a, S: Tabled<'a>> Valued<'a> for S {
 }
 
 /// Returns the value of a definition, which `may_be_name` allows to be the name of another.
-fn defined<'a, S: Tabled<'a>>(reader: &mut Reader<'a>, number: usize, may_be_name: bool) -> Option<S::Meaning> {
+fn defined<'a, S: NamedValue<'a>>(reader: &mut Reader<'a>, number: usize, may_be_name: bool) -> Option<S::Meaning> {
     let depth = reader.depth;
     let Table { index, definitions } = S::table(reader);
     let place = index.span_of(number);
@@ -102,7 +102,7 @@ fn defined<'a, S: Tabled<'a>>(reader: &mut Reader<'a>, number: usize, may_be_nam
 }
 
 /// Reads every definition of a table, whether it is used or not.
-fn read_table<'a, S: Tabled<'a>>(reader: &mut Reader<'a>, index: Index, entries: Vec<Entry<'a, S>>, chains: bool) {
+fn read_table<'a, S: NamedValue<'a>>(reader: &mut Reader<'a>, index: Index, entries: Vec<Entry<'a, S>>, chains: bool) {
     let count = entries.len();
     let table = S::table(reader);
     table.index = index;
@@ -121,7 +121,7 @@ fn read_table<'a, S: Tabled<'a>>(reader: &mut Reader<'a>, index: Index, entries:
 /// messages, and how a value that is not a name is read.
 macro_rules! tables {
     ($($table:ident $chains:literal, $what:literal: $source:ty => $meaning:ty, |$reader:ident, $raw:ident| $read:expr;)+) => {
-        $(impl<'a> Tabled<'a> for $source {
+        $(impl<'a> NamedValue<'a> for $source {
             type Meaning = $meaning;
 
             fn literal($reader: &mut Reader<'a>, $raw: &Raw<'a, Self>) -> Option<$meaning> {

@@ -123,7 +123,7 @@ fn operation<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ShaderOperation>
 }
 
 /// Reads the fields in parentheses behind an operation. Without parentheses, all fields are absent.
-fn fields<'a, T: source::Expected<'a> + Default>(reader: &mut Reader<'a>, rest: &'a str) -> Option<T> {
+fn fields<'a, T: source::FromSource<'a> + Default>(reader: &mut Reader<'a>, rest: &'a str) -> Option<T> {
     if rest.is_empty() { Some(T::default()) } else { reader.read(&Raw::new(rest)) }
 }
 
