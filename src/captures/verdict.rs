@@ -35,6 +35,13 @@ impl WrongPicture {
     pub const HELP: &str = "take the pictures of the source that `ninebit captures list` names";
 }
 
+/// Returns an error and advice for the first name that is no suite of drawn frames.
+pub fn unknown_suite(names: &[String]) -> Option<[String; 2]> {
+    let unknown = names.iter().find(|name| !suites().any(|suite| suite == name.as_str()))?;
+    let all: Vec<&str> = suites().collect();
+    Some([format!("there is no suite `{}`", shown::name(unknown)), format!("the suites are {}", all.join(", "))])
+}
+
 /// Returns where the folder of the captures has the picture of a frame.
 pub fn path(folder: &Path, frame: &Frame) -> PathBuf {
     folder.join(frame.suite).join(format!("{}.png", frame.name))

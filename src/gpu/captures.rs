@@ -1,7 +1,7 @@
 //! The command `captures`: captured frames of a real NV2A, drawn again by the GPU.
 
 use ninebit_captures::verdict::{self, Verdict};
-use ninebit_captures::{Frame, frames, suites};
+use ninebit_captures::{Frame, frames};
 use ninebit_scene::image::{self, ImageLimits};
 
 use super::*;
@@ -25,10 +25,8 @@ pub(crate) struct Arguments {
 
 /// Draws captured frames and compares them.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let known: Vec<&str> = suites().collect();
-    if let Some(unknown) = arguments.suites.iter().find(|suite| !known.contains(&suite.as_str())) {
-        let help = format!("the suites are {}", known.join(", "));
-        return Err(Failure::usage(format!("there is no suite `{}`", shown::name(unknown)), help));
+    if let Some([error, help]) = verdict::unknown_suite(&arguments.suites) {
+        return Err(Failure::usage(error, help));
     }
     let wanted: Vec<&str> = arguments.suites.iter().map(String::as_str).collect();
     let policies = arguments.drawing.policies()?;

@@ -3,9 +3,9 @@
 //! Most words are the same ([`Family::own`] knows their numbers). The others, and what the class does not have, stand here. Sources: the
 //! register database and the hardware tests of envytools (MIT), for the origin of the window Mesa's nouveau driver (MIT).
 
-use ninebit_program::registers::unit::ENABLE;
+use ninebit_program::registers::unit::{ENABLE, STAGE_CUBE, STAGE_TWO};
 
-use crate::class::{self, Family, STAGE_CUBE, STAGE_TWO, of_unit};
+use crate::class::{self, Family, of_unit};
 use crate::vertex::attribute;
 
 /// TEX_FORMAT of unit 0.

@@ -297,8 +297,6 @@ pub(crate) fn of_unit(method: u32, unit: usize) -> u32 {
     method + 64 * unit as u32
 }
 
-pub(crate) use ninebit_program::registers::unit::{STAGE_CUBE, STAGE_THREE, STAGE_TWO};
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -11,7 +11,7 @@ use ninebit::state::{
     Buffer, DepthBuffer, Draw, Named, Palette, Rectangle, Scene, ShaderOperation, TEXTURE_UNITS, Target, Texture,
     TextureFormat, TextureImage, TextureKind, TextureUnit, VertexDepths,
 };
-use ninebit_program::registers::unit::ENABLE;
+use ninebit_program::registers::unit::{ENABLE, STAGE_THREE};
 use ninebit_scene::clear::Clear;
 
 use crate::class::{self, Family};
@@ -356,7 +356,7 @@ impl Builder {
 
     fn unit(&mut self, view: &mut View<'_>, memory: &Memory, index: usize, target: usize) -> Option<TextureUnit> {
         let image = image(view, index)?;
-        let projects = shader::code(view, index) == class::STAGE_THREE;
+        let projects = shader::code(view, index) == STAGE_THREE;
         let mut state = unit(view, index, &image, projects);
         state.texture = match self.target_texture(view, &image, target) {
             Some(texture) => texture,

@@ -78,10 +78,8 @@ fn list() -> Result<(), Failure> {
 }
 
 fn check(arguments: &CheckArguments) -> Result<(), Failure> {
-    let known: Vec<&str> = ninebit_captures::suites().collect();
-    if let Some(unknown) = arguments.suites.iter().find(|suite| !known.contains(&suite.as_str())) {
-        let help = format!("the suites are {}", known.join(", "));
-        return Err(Failure::usage(format!("there is no suite `{}`", shown::name(unknown)), help));
+    if let Some([error, help]) = verdict::unknown_suite(&arguments.suites) {
+        return Err(Failure::usage(error, help));
     }
     let suites: Vec<&str> = arguments.suites.iter().map(String::as_str).collect();
     let options = RenderOptions { threads: 1, ..arguments.engine.options()? };

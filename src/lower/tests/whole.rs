@@ -219,31 +219,28 @@ fn printed_glsl_compiles() {
     }
 }
 
+/// Draws every `step`th committed scene and a share of the random ones by a driver that a module of Python opens, where there is one.
+fn hold_by_driver(way: Way, module: &str, step: u64, share: u64, seed: u64) {
+    if works(&python(), &["-c", &format!("import {module}, numpy")]) {
+        hold_committed(way, setting("NINEBIT_WHOLE_EVERY").unwrap_or(step) as usize);
+        let count = setting("NINEBIT_WHOLE_SCENES").unwrap_or(200) / share;
+        hold_random(way, setting("NINEBIT_WHOLE_SEED").unwrap_or(seed), count);
+    }
+}
+
 #[test]
 fn printed_wgsl_draws_scenes() {
-    if works(&python(), &["-c", "import wgpu, numpy"]) {
-        hold_committed(Way::Wgsl, setting("NINEBIT_WHOLE_EVERY").unwrap_or(40) as usize);
-        let count = setting("NINEBIT_WHOLE_SCENES").unwrap_or(200) / 40;
-        hold_random(Way::Wgsl, setting("NINEBIT_WHOLE_SEED").unwrap_or(43), count);
-    }
+    hold_by_driver(Way::Wgsl, "wgpu", 40, 40, 43);
 }
 
 #[test]
 fn printed_shaders_draw_scenes() {
-    if works(&python(), &["-c", "import moderngl, numpy"]) {
-        hold_committed(Way::Pair, setting("NINEBIT_WHOLE_EVERY").unwrap_or(24) as usize);
-        let count = setting("NINEBIT_WHOLE_SCENES").unwrap_or(200) / 40;
-        hold_random(Way::Pair, setting("NINEBIT_WHOLE_SEED").unwrap_or(44), count);
-    }
+    hold_by_driver(Way::Pair, "moderngl", 24, 40, 44);
 }
 
 #[test]
 fn generic_shaders_draw_scenes() {
-    if works(&python(), &["-c", "import moderngl, numpy"]) {
-        hold_committed(Way::GenericPair, setting("NINEBIT_WHOLE_EVERY").unwrap_or(110) as usize);
-        let count = setting("NINEBIT_WHOLE_SCENES").unwrap_or(200) / 100;
-        hold_random(Way::GenericPair, setting("NINEBIT_WHOLE_SEED").unwrap_or(46), count);
-    }
+    hold_by_driver(Way::GenericPair, "moderngl", 110, 100, 46);
 }
 
 /// Draws random scenes. Returns how many were drawn.

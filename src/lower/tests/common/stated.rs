@@ -53,8 +53,7 @@ fn program(chip: Profile, policies: Policies, Programs(programs): &mut Programs)
     let lines = header.lines().count() + source.lines().count();
     assert!(lines <= LINES, "{lines} lines");
     let folder = tempfile::tempdir().unwrap();
-    let main =
-        format!("#include \"{name}.h\"\n#include <string.h>\n{HEAD}{}", MAIN.replace("static uint32_t *given;", ""));
+    let main = format!("#include \"{name}.h\"\n#include <string.h>\n{HEAD}{MAIN}");
     for (file, text) in [(format!("{name}.h"), header), (format!("{name}.c"), source), ("main.c".to_string(), main)] {
         std::fs::write(folder.path().join(file), text).unwrap();
     }
