@@ -5,11 +5,7 @@ use ninebit::texture::format::expand;
 
 /// Returns the bits of a word that the format uses. The others are zero in the state.
 pub fn used_bits(format: TextureFormat) -> u32 {
-    match format {
-        TextureFormat::X8R8G8B8 => 0x00ff_ffff,
-        TextureFormat::X1R5G5B5 => 0x7fff,
-        format => u32::MAX >> (32 - 8 * format.bytes().min(4)),
-    }
+    if can_pack(format) { word([255; 4], format) } else { u32::MAX >> (32 - 8 * format.bytes().min(4)) }
 }
 
 /// Converts texels or blocks in memory, little-endian, into words of the state. Bytes of an incomplete texel are ignored.
@@ -158,7 +154,11 @@ mod tests {
             for n in 0..=0xffff_u32 {
                 let word = n.wrapping_mul(0x9e37_0001) & used_bits(format);
                 // Y16 shows the two bytes of its value in two channels; all other formats show each value in one channel.
-                assert_eq!(super::word(expand(format, word), format), word, "{format:?}");
+                assert_eq!(
+                    super::word(expand(format, word), format),
+                    word,
+                    "`word` has to undo `expand` of {format:?}"
+                );
             }
         }
     }

@@ -121,12 +121,9 @@ impl BaseFormat {
             TextureFormat::L8 => BaseFormat::Luminance,
             TextureFormat::A8L8 => BaseFormat::LuminanceAlpha,
             TextureFormat::I8 => BaseFormat::Intensity,
-            TextureFormat::X8R8G8B8
-            | TextureFormat::R5G6B5
-            | TextureFormat::R6G5B5
-            | TextureFormat::X1R5G5B5
-            | TextureFormat::Y16 => BaseFormat::Rgb,
-            _ => BaseFormat::Rgba,
+            // No unit reads depths as colours.
+            _ if format.has_alpha() || format.depth().is_some() => BaseFormat::Rgba,
+            _ => BaseFormat::Rgb,
         }
     }
 }

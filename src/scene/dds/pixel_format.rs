@@ -1,6 +1,7 @@
 //! Finds the texture format that the pixel format of a DDS file describes: its masks have to agree bit by bit.
 
-use ninebit::state::TextureFormat;
+use ninebit::state::{Named, TextureFormat};
+use ninebit_files::texels::{can_pack, word};
 
 const ALPHA_BESIDE: u32 = 0x1;
 const ALPHA_ALONE: u32 = 0x2;
@@ -19,25 +20,11 @@ pub(super) struct PixelFormat {
     pub(super) masks: [u32; 4],
 }
 
-/// Formats with their number of bits and their masks of red, green, blue and alpha.
-const BY_MASKS: &[(TextureFormat, u32, [u32; 4])] = &[
-    (TextureFormat::A8R8G8B8, 32, [0xff_0000, 0xff00, 0xff, 0xff00_0000]),
-    (TextureFormat::X8R8G8B8, 32, [0xff_0000, 0xff00, 0xff, 0]),
-    (TextureFormat::A8B8G8R8, 32, [0xff, 0xff00, 0xff_0000, 0xff00_0000]),
-    (TextureFormat::B8G8R8A8, 32, [0xff00, 0xff_0000, 0xff00_0000, 0xff]),
-    (TextureFormat::R8G8B8A8, 32, [0xff00_0000, 0xff_0000, 0xff00, 0xff]),
-    (TextureFormat::R5G6B5, 16, [0xf800, 0x7e0, 0x1f, 0]),
-    (TextureFormat::R6G5B5, 16, [0xfc00, 0x3e0, 0x1f, 0]),
-    (TextureFormat::X1R5G5B5, 16, [0x7c00, 0x3e0, 0x1f, 0]),
-    (TextureFormat::A1R5G5B5, 16, [0x7c00, 0x3e0, 0x1f, 0x8000]),
-    (TextureFormat::A4R4G4B4, 16, [0xf00, 0xf0, 0xf, 0xf000]),
-];
-
-/// Formats with their number of bits and their masks of luminance, nothing, nothing and alpha.
-const BY_LUMINANCE: &[(TextureFormat, u32, [u32; 4])] = &[
-    (TextureFormat::L8, 8, [0xff, 0, 0, 0]),
-    (TextureFormat::A8L8, 16, [0xff, 0, 0, 0xff00]),
-    (TextureFormat::Y16, 16, [0xffff, 0, 0, 0]),
+/// Formats with their number of bits and their masks of luminance and alpha.
+const BY_LUMINANCE: [(TextureFormat, u32, [u32; 2]); 3] = [
+    (TextureFormat::L8, 8, [0xff, 0]),
+    (TextureFormat::A8L8, 16, [0xff, 0xff00]),
+    (TextureFormat::Y16, 16, [0xffff, 0]),
 ];
 
 impl PixelFormat {
@@ -61,13 +48,16 @@ impl PixelFormat {
         if self.flags & ALPHA_BESIDE == 0 {
             alpha = 0;
         }
-        let (formats, masks) = match self.flags & (COLORS | LUMINANCE) {
-            0 => (&[][..], self.masks),
-            COLORS => (BY_MASKS, [red, green, blue, alpha]),
-            _ => (BY_LUMINANCE, [red, 0, 0, alpha]),
+        let known = match self.flags & (COLORS | LUMINANCE) {
+            0 => None,
+            COLORS => of_masks(self.bits, [red, green, blue, alpha]),
+            _ => {
+                let known = BY_LUMINANCE.iter().find(|(_, bits, masks)| (*bits, *masks) == (self.bits, [red, alpha]));
+                known.map(|(format, ..)| *format)
+            }
         };
-        if let Some((format, ..)) = formats.iter().find(|(_, bits, known)| (*bits, *known) == (self.bits, masks)) {
-            return Ok(*format);
+        if let Some(format) = known {
+            return Ok(format);
         }
         let of = if self.flags & LUMINANCE != 0 {
             format!("luminance {red:#x}")
@@ -76,6 +66,15 @@ impl PixelFormat {
         };
         Err(format!("texels of {} bits ({of}, alpha {alpha:#x})", self.bits))
     }
+}
+
+/// Returns the first format of so many bits that keeps red, green, blue and alpha in these.
+fn of_masks(bits: u32, masks: [u32; 4]) -> Option<TextureFormat> {
+    let full = |n: usize| std::array::from_fn(|channel| if channel == n { 255 } else { 0 });
+    let stores = |format: TextureFormat| [0, 1, 2, 3].map(|n| word(full(n), format));
+    let has_colors = !masks[..3].contains(&0);
+    let mut packable = TextureFormat::ALL.iter().copied().filter(|format| has_colors && can_pack(*format));
+    packable.find(|format| 8 * format.bytes() == bits && stores(*format) == masks)
 }
 
 fn of_four_characters(text: [u8; 4]) -> Result<TextureFormat, String> {
