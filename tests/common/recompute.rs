@@ -74,37 +74,8 @@ fn is_parameter(name: &str) -> bool {
         "b",
         "a",
     ];
-    let formats = [
-        "A8R8G8B8",
-        "X8R8G8B8",
-        "R5G6B5",
-        "X1R5G5B5",
-        "A1R5G5B5",
-        "L8",
-        "A8",
-        "G8B8",
-        "A8B8G8R8",
-        "B8G8R8A8",
-        "R8G8B8A8",
-        "R6G5B5",
-        "A4R4G4B4",
-        "I8",
-        "A8L8",
-        "R8B8",
-        "X8R8G8B8Z",
-        "X8R8G8B8O",
-        "X1R5G5B5Z",
-        "X1R5G5B5O",
-        "X1A7R8G8B8Z",
-        "X1A7R8G8B8O",
-        "B8",
-    ];
     let slope = name.starts_with("dE") || name.starts_with("dside");
-    parameters.contains(&name)
-        || name.starts_with("point.")
-        || formats.contains(&name)
-        || slope
-        || name.ends_with(".origin")
+    parameters.contains(&name) || name.starts_with("point.") || is_format(name) || slope || name.ends_with(".origin")
 }
 
 /// Recomputes one fragment under the document's `policies`. Returns the final value of each name.
@@ -519,30 +490,50 @@ fn channel(letter: &str) -> Option<usize> {
     ["r", "g", "b", "a"].iter().position(|l| *l == letter)
 }
 
+/// Returns the letters of a format and their numbers of bits, from the top down. What is written into unused bits follows: `Z` or `O`.
+fn fields(format: &str) -> Option<Vec<(char, u32)>> {
+    let format = format.strip_suffix(['Z', 'O']).unwrap_or(format);
+    let starts: Vec<usize> = format.match_indices(char::is_uppercase).map(|(at, _)| at).collect();
+    if starts.first() != Some(&0) {
+        return None;
+    }
+    let ends = starts.iter().copied().skip(1).chain([format.len()]);
+    let one = |(start, end): (&usize, usize)| {
+        Some((format[*start..].chars().next()?, format.get(start + 1..end)?.parse().ok()?))
+    };
+    starts.iter().zip(ends).map(one).collect()
+}
+
+fn is_format(name: &str) -> bool {
+    fields(name).is_some_and(|fields| [8, 16, 32].contains(&fields.iter().map(|(_, bits)| bits).sum::<u32>()))
+}
+
+/// Returns a channel of a texel, which the name of the format describes.
 fn texel(format: &str, word: i128, letter: &str) -> Option<i128> {
-    let five = |v: i128| v << 3 | v >> 2;
-    let six = |v: i128| v << 2 | v >> 4;
     let c = channel(letter)?;
-    let argb = [word >> 16 & 255, word >> 8 & 255, word & 255, word >> 24 & 255];
-    Some(match format {
-        "A8R8G8B8" => argb[c],
-        "X8R8G8B8" => [argb[0], argb[1], argb[2], 255][c],
-        "A8B8G8R8" => [argb[2], argb[1], argb[0], argb[3]][c],
-        "B8G8R8A8" => [argb[1], argb[0], argb[3], argb[2]][c],
-        "R8G8B8A8" => [argb[3], argb[0], argb[1], argb[2]][c],
-        "R6G5B5" => [six(word >> 10 & 63), five(word >> 5 & 31), five(word & 31), 255][c],
-        "A4R4G4B4" => [word >> 8 & 15, word >> 4 & 15, word & 15, word >> 12][c] * 17,
-        "I8" => word,
-        "A8L8" => [word & 255, word & 255, word & 255, word >> 8][c],
-        "R8B8" => [word >> 8, word & 255, word & 255, word >> 8][c],
-        "R5G6B5" => [five(word >> 11), six(word >> 5 & 63), five(word & 31), 255][c],
-        "A1R5G5B5" => [five(word >> 10 & 31), five(word >> 5 & 31), five(word & 31), 255 * (word >> 15)][c],
-        "X1R5G5B5" => [five(word >> 10 & 31), five(word >> 5 & 31), five(word & 31), 255][c],
-        "L8" => [word, word, word, 255][c],
-        "A8" => [255, 255, 255, word][c],
-        "G8B8" => [word & 255, word >> 8, word & 255, word >> 8][c],
-        _ => return None,
-    })
+    match format {
+        "G8B8" => return Some([word & 255, word >> 8, word & 255, word >> 8][c]),
+        "R8B8" => return Some([word >> 8, word & 255, word & 255, word >> 8][c]),
+        _ => {}
+    }
+    // Luminance and intensity stand for several channels. One that is not stored is 255.
+    let named = [["R", "L", "I"], ["G", "L", "I"], ["B", "L", "I"], ["A", "A", "I"]][c];
+    let mut low = 0;
+    for (name, bits) in fields(format)?.into_iter().rev() {
+        let v = word >> low & ((1 << bits) - 1);
+        low += bits;
+        if named.iter().any(|one| one.starts_with(name)) {
+            return match bits {
+                1 => Some(255 * v),
+                4 => Some(17 * v),
+                5 => Some(v << 3 | v >> 2),
+                6 => Some(v << 2 | v >> 4),
+                8 => Some(v),
+                _ => None,
+            };
+        }
+    }
+    Some(255)
 }
 
 fn surface(format: &str, word: i128, letter: &str) -> Option<i128> {

@@ -38,8 +38,20 @@ pub fn bytes(format: TextureFormat, word: u32) -> [i128; 4] {
         TextureFormat::A8L8 => [byte(0), byte(0), byte(0), byte(1)],
         TextureFormat::G8B8 => [byte(0), byte(1), byte(0), byte(1)],
         TextureFormat::R8B8 => [byte(1), byte(0), byte(0), byte(1)],
-        other => unreachable!("{other:?} is looked up, decoded or read in halves"),
+        TextureFormat::P8 | TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5 => {
+            unreachable!("{format:?} is looked up or decoded")
+        }
+        TextureFormat::R16B16 | TextureFormat::Y16 => unreachable!("{format:?} is read in halves"),
+        TextureFormat::Z16 | TextureFormat::Z24S8 | TextureFormat::Z16F | TextureFormat::Z24S8F => {
+            unreachable!("{format:?} is compared")
+        }
     }
+}
+
+/// KEY-1: returns whether texels have their own alpha. Without it alpha is 255, whatever the word.
+pub fn has_alpha(format: TextureFormat) -> bool {
+    let other = matches!(format, TextureFormat::P8 | TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5);
+    other || bytes(format, 0)[3] != 255
 }
 
 /// TEX-1: returns the two halves of a word that is filtered at 16 bits. Y16 has 255 in both bytes of the upper half.

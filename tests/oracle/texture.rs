@@ -234,9 +234,10 @@ impl Image {
 
     /// KEY-1: returns whether a texel matches the key. The filter of a unit with a key is nearest.
     fn is_keyed(&self, value: [i128; 4]) -> bool {
-        use TextureFormat::{L8, R5G6B5, R6G5B5, X1R5G5B5, X8R8G8B8};
-        let channels = if [L8, R5G6B5, R6G5B5, X1R5G5B5, X8R8G8B8].contains(&self.format) { 3 } else { 4 };
-        self.unit.color_key.is_some_and(|key| (0..channels).all(|c| value[c] & 255 == key.color[c].into()))
+        self.unit.color_key.is_some_and(|key| {
+            let channels = if texel::has_alpha(self.format) { 4 } else { 3 };
+            (0..channels).all(|c| value[c] & 255 == key.color[c].into())
+        })
     }
 
     /// KEY-1: returns whether a sampled colour drops the fragment. A key that does so never changes the texel.

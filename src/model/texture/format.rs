@@ -219,6 +219,15 @@ mod tests {
         assert_eq!(expand(TextureFormat::A8R8G8B8, 0x1122_3344), [0x22, 0x33, 0x44, 0x11]);
     }
 
+    /// What `state` says of a format beside its channels.
+    #[test]
+    fn alpha_is_known_to_the_state() {
+        for format in TextureFormat::ALL.iter().copied() {
+            let Some(channels) = channels(format) else { continue };
+            assert_eq!(format.has_alpha(), matches!(channels[3], Bits(..)), "correct `has_alpha` for {format:?}");
+        }
+    }
+
     #[test]
     fn signed_channels() {
         for byte in 0..=255_u32 {
