@@ -179,7 +179,7 @@ fn mutations_are_of_texts_that_occur_once() {
         let [rule, what, file, old, new] =
             ["rule", "what", "file", "old", "new"].map(|key| mutant[key].as_str().unwrap());
         let text = std::fs::read_to_string(at(file)).unwrap();
-        assert_eq!(text.matches(old).count(), 1, "{file}: {old}");
+        assert_eq!(text.matches(old).count(), 1, "vectors/mutation/mutants.json has to follow {file}: {what}: {old}");
         assert!(old != new && ninebit_handbook::find(rule).is_some(), "{what}");
         let row = format!("\n{rule}\t{file}\t{what}\t");
         assert!(table.contains(&row), "run vectors/mutation/run: mutations.tsv has no {row}");

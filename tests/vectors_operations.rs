@@ -115,7 +115,8 @@ fn every_operation_of_up_to_32_bits_has_its_tree() {
                 let taken: BTreeSet<i64> = swept.iter().flat_map(|sweep| numbers(&sweep.part().columns()[n])).collect();
                 let missing: Vec<&str> =
                     numbers(&column).filter(|n| !taken.contains(n)).map(|n| names[n as usize]).collect();
-                assert!(missing.is_empty(), "{} {}: no tree has {missing:?}", unit.name(), column.name);
+                let remedy = "make one as docs/vectors.md says below Every row";
+                assert!(missing.is_empty(), "{} {}: no tree has {missing:?}: {remedy}", unit.name(), column.name);
             } else if column.name.starts_with("in.") {
                 // Every input varies in a tree as well, unless it is one of several channels that are computed alike.
                 let varies =
