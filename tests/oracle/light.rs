@@ -70,7 +70,11 @@ impl Unit {
 
     fn sum(self, terms: &[Number]) -> Number {
         let Some(top) = terms.iter().filter_map(|term| term.exponent()).max() else { return ZERO };
-        let grid = top + 1 - self.size - self.guard;
+        self.exact_sum(terms, top + 1 - self.size - self.guard)
+    }
+
+    /// The sum of terms that are cut to multiples of 2^grid.
+    fn exact_sum(self, terms: &[Number], grid: i32) -> Number {
         let m = terms.iter().map(|term| shift(term.cut_at(grid).m, term.cut_at(grid).e - grid)).sum();
         Number { m, e: grid }.cut(self.size)
     }
@@ -124,11 +128,17 @@ fn direction(v: [Number; 3]) -> ([Number; 3], Number, Number) {
     (v.map(|c| TRANSFORM.product(c, root)), TRANSFORM.product(square, root), square)
 }
 
-/// (x + a y) by 1/(x b + c y), times a factor before the reciprocal; 0 below a numerator of 0.
-fn bent(x: Number, y: Number, [a, b, c]: [Number; 3], factor: Number) -> Number {
-    let (scaled, over) = (SINGLE.product(y, a), SINGLE.product(y, c));
-    let numerator = SINGLE.sum(&[x, scaled]);
-    let divisor = SINGLE.sum(&[SINGLE.product(x, b), over]);
+/// VTX-6: x b + c, whose terms share a last bit: that of the larger of c and of a product of the factors' powers of two.
+fn multiply_add(x: Number, b: Number, c: Number) -> Number {
+    let (Some(first), Some(second)) = (x.exponent(), b.exponent()) else { return c };
+    let top = c.exponent().map_or(first + second, |third| third.max(first + second));
+    // The product keeps the bits below that the second factor brings.
+    let (x, c) = (x.cut_at(top - second - 13), c.cut_at(top - 13));
+    SINGLE.exact_sum(&[x.times(b), c], top - 26)
+}
+
+/// A numerator times a factor by 1/divisor; 0 below a numerator of 0.
+fn quotient(numerator: Number, factor: Number, divisor: Number) -> Number {
     if is_negative(numerator) {
         return ZERO;
     }
@@ -153,7 +163,8 @@ fn shares(material: &Material, light: &Light, point: [f32; 3], normal: [f32; 3])
                 let [x, y, z] = [0, 1, 2].map(|k| TRANSFORM.product(to_light[k], axis[k]));
                 let x = TRANSFORM.sum(&[x, y, z, Number::of(offset)]);
                 let x = if x.real() > 1.0 { ONE } else { to_word(x) };
-                share = if is_negative(x) { ZERO } else { bent(x, ONE, words(falloff), share) };
+                let [a, b, c] = words(falloff);
+                share = if is_negative(x) { ZERO } else { quotient(SINGLE.sum(&[x, a]), share, multiply_add(b, x, c)) };
             }
             (to_light.map(to_word), share)
         }
@@ -165,7 +176,8 @@ fn shares(material: &Material, light: &Light, point: [f32; 3], normal: [f32; 3])
     let [a, b, c, d, e, f] = material.powers.map(|p| to_word(Number::of(p)));
     let specular = match *light {
         Light::Far { half, .. } if !material.local_eye => {
-            bent(VECTORS.dot(normal, words(half)), ONE, [a, b, c], attenuation)
+            let x = VECTORS.dot(normal, words(half));
+            quotient(SINGLE.sum(&[x, a]), attenuation, multiply_add(x, b, c))
         }
         _ => {
             let eye = if material.local_eye {
@@ -178,7 +190,8 @@ fn shares(material: &Material, light: &Light, point: [f32; 3], normal: [f32; 3])
             if is_negative(along) {
                 ZERO
             } else {
-                bent(SINGLE.product(along, along), VECTORS.dot(half, half), [d, e, f], attenuation)
+                let (x, y) = (SINGLE.product(along, along), VECTORS.dot(half, half));
+                quotient(multiply_add(y, d, x), attenuation, multiply_add(y, f, SINGLE.product(x, e)))
             }
         }
     };
@@ -202,8 +215,12 @@ pub fn red(material: &Material, is_separate: bool, point: [f32; 3], normal: [f32
     for (light, colors) in &material.lights {
         let shares = shares(material, light, point, normal);
         for (n, source) in [ambient, diffuse, specular].into_iter().enumerate() {
-            let light = VECTORS.product(shares[n], to_word(Number::of(colors[n])));
-            let light = source.map_or(light, |own| VECTORS.product(light, own));
+            let color = to_word(Number::of(colors[n]));
+            // The last product enters the sum with all of its bits.
+            let light = match source {
+                None => shares[n].times(color),
+                Some(own) => VECTORS.product(shares[n], color).times(own),
+            };
             let total = if n == 2 && is_separate { &mut secondary } else { &mut primary };
             *total = VECTORS.sum(&[*total, light]);
         }

@@ -2,7 +2,8 @@
 //! FOG-3, VTX-6).
 //!
 //! A word is the bit pattern of a binary32 number whose lowest ten bits are 0. There are no denormals, and the only NaN
-//! is `NAN`. The unit has a part for vectors of three numbers, and one for single numbers, which keeps no guard bits in sums.
+//! is `NAN`. The unit has a part for vectors of three numbers, and one for single numbers, which keeps no guard bits in sums. Both
+//! multiply and add in one step.
 
 use super::transform::middle;
 pub use super::transform::{INFINITY, ONE, SIGN};
@@ -76,6 +77,32 @@ pub fn single_product(a: u32, b: u32) -> u32 {
     product(a, b)
 }
 
+/// VTX-6: returns total + a b in the part for vectors: the sum of a word and of a product that is not cut before.
+pub fn add_product(total: u32, a: u32, b: u32) -> u32 {
+    if is_zero(a) || is_zero(b) || [total, a, b].into_iter().any(|x| exponent(x) == 255) {
+        return sum([total, product(a, b)]);
+    }
+    let product = mantissa(a) * mantissa(b);
+    let last = exponent(a) + exponent(b) - 127 - FRACTION_BITS as i32;
+    // The product of the mantissas has one or two bits before the point.
+    let leading = last + product.ilog2() as i32 - FRACTION_BITS as i32;
+    let terms = [(total, mantissa(total), exponent(total)), (a ^ b, product, last)];
+    aligned_sum(terms, exponent(total).max(leading) - GUARD_BITS as i32)
+}
+
+/// VTX-6: returns x b + c in the part for single numbers. The first factor, not the product, is cut at the last bit of c where c is larger.
+pub fn multiply_add(x: u32, b: u32, c: u32) -> u32 {
+    let field = exponent(x) + exponent(b) - 127;
+    if is_zero(x) || is_zero(b) || [exponent(x), exponent(b), exponent(c), field].into_iter().any(|field| field >= 255)
+    {
+        return single_sum(single_product(x, b), c);
+    }
+    let largest = field.max(exponent(c));
+    let [first, third] = [(x, field), (c, exponent(c))].map(|(x, field)| mantissa(x) >> (largest - field).min(31));
+    let last = largest - FRACTION_BITS as i32;
+    aligned_sum([(x ^ b, first * mantissa(b), last), (c, third, largest)], last)
+}
+
 /// VTX-6: returns 1/x by one step of Newton's method from seven bits; of zero it is infinity. It has 12 bits after the leading one.
 pub fn reciprocal(x: u32) -> u32 {
     if is_nan(x) {
@@ -99,16 +126,22 @@ fn guarded_sum<const N: usize>(terms: [u32; N], guard: u32) -> u32 {
     if terms.iter().any(|term| is_infinite(*term)) {
         return INFINITY;
     }
-    let terms = terms.map(|term| if is_zero(term) { 0 } else { term });
     let largest = terms.iter().map(|term| exponent(*term)).fold(0, i32::max);
-    let mut sum = 0_i32;
-    for term in terms.into_iter().filter(|term| *term != 0) {
-        let down = (largest - exponent(term)).min(31);
-        let magnitude = (mantissa(term) << guard >> down) as i32;
-        sum += if term >> 31 == 1 { -magnitude } else { magnitude };
-    }
-    let sign = u32::from(sum < 0) << 31;
-    finite(sign, sum.unsigned_abs(), largest - guard as i32)
+    aligned_sum(terms.map(|term| (term, mantissa(term), exponent(term))), largest - guard as i32)
+}
+
+/// Returns the sum of numbers, each cut to a multiple of the last bit, which is added exactly and then truncated. A number
+/// has the sign of a word, a magnitude, and the exponent field of a word whose last bit has the weight of the magnitude's.
+fn aligned_sum<const N: usize>(terms: [(u32, u32, i32); N], last: i32) -> u32 {
+    let sum: i32 = terms
+        .into_iter()
+        .map(|(sign, magnitude, exponent)| {
+            let down = last - exponent;
+            let cut = if down > 0 { magnitude >> down.min(31) } else { magnitude << -down };
+            if sign & SIGN == 0 { cut as i32 } else { -(cut as i32) }
+        })
+        .sum();
+    finite(u32::from(sum < 0) << 31, sum.unsigned_abs(), last)
 }
 
 /// Truncates a magnitude to a word. `exponent` is the exponent field of a word whose last bit has the same weight as
@@ -130,9 +163,9 @@ fn exponent(word: u32) -> i32 {
     (word >> 23 & 255) as i32
 }
 
-/// Returns the 14 bits of the mantissa, including the leading one.
+/// Returns the 14 bits of the mantissa, including the leading one; 0 of zero.
 fn mantissa(word: u32) -> u32 {
-    word >> 10 & ((1 << FRACTION_BITS) - 1) | 1 << FRACTION_BITS
+    if is_zero(word) { 0 } else { word >> 10 & ((1 << FRACTION_BITS) - 1) | 1 << FRACTION_BITS }
 }
 
 fn is_zero(word: u32) -> bool {
@@ -206,6 +239,36 @@ mod tests {
         assert_eq!([single_product(0, INFINITY), single_product(one | SIGN, INFINITY)], [0, INFINITY | SIGN]);
         assert_eq!([single_product(NAN, 0), single_sum(NAN, one)], [NAN; 2]);
         assert_eq!(dot([one; 3], [one, one, one | SIGN]), one);
+    }
+
+    #[test]
+    fn products_in_sums() {
+        let two = ONE + (1 << 23);
+        // As captured frames have them; cut products give 3d9e0000 and 3ec07400.
+        assert_eq!(multiply_add(0x3f7f_3c00, 0xc046_4000, 0x404a_9800), 0x3d9e_5c00);
+        let (x, b, c) = (0x3f77_9c00, 0xc020_7400, 0x4033_3c00);
+        assert_eq!(multiply_add(b, x, c), 0x3ec0_7000);
+        // 2 (1 - 2^-14) - 3: beside 3 the first factor loses its last bit, the second does not.
+        let (below, three) = (0x3f7f_fc00, 0xc040_0000);
+        assert_eq!([multiply_add(below, two, three), multiply_add(two, below, three)], [0xbf80_0800, 0xbf80_0400]);
+        for x in [below, two, three, 0x3f8a_8800, 0] {
+            assert_eq!(
+                [multiply_add(x, ONE, three), multiply_add(three, x, 0)],
+                [single_sum(x, three), product(three, x)]
+            );
+            assert_eq!(
+                [multiply_add(x, 0, three), add_product(three, 0, x), add_product(0, x, three)],
+                [three, three, product(x, three)]
+            );
+        }
+        // (1 - 2^-7) (1 - 2^-8) keeps its 2^-15 beside 1, which the product as a word lacks; (1 - 2^-9) (1 - 2^-10) loses its 2^-19.
+        let (minus, a, b) = (ONE | SIGN, 0x3f7e_0000, 0x3f7f_0000);
+        assert_eq!([add_product(minus, a, b), sum([minus, product(a, b)])], [0xbc3f_8000, 0xbc40_0000]);
+        assert_eq!(add_product(minus, 0x3f7f_8000, 0x3f7f_c000), 0xbb40_0000);
+        assert_eq!([multiply_add(INFINITY, ONE, ONE), add_product(ONE, NAN, ONE)], [INFINITY, NAN]);
+        let large = LARGEST_FINITE;
+        assert_eq!([multiply_add(large, two, ONE), multiply_add(large, ONE, large)], [INFINITY, large]);
+        assert_eq!([multiply_add(0x0080_0000, 0x3f00_0000, 0), add_product(0, 0x0080_0000, 0x3f00_0000)], [0; 2]);
     }
 
     #[test]

@@ -8,14 +8,16 @@
 //! diffuse      attenuation (n l), 0 if n l is negative
 //! specular     attenuation f(x), 0 if n l or f's numerator is negative
 //! f(x)         (x + A) / (x B + C), which Direct3D fits to x^power; x is n h of a far light and a far eye,
-//!              else (x + D) / (x E + F) of x = (n h)^2 / h^2 with h = l + eye, for half the power
-//! cone         the same function of s l + s', at most 1, with the words of the falloff, 0 if s l + s' is negative
+//!              else (y D + x) / (y F + x E) of x = (n h)^2 and y = h^2 with h = l + eye, for half the power
+//! cone         the first function of s l + s', at most 1, with the words of the falloff, 0 if s l + s' is negative
 //! ```
 //!
 //! Distances and directions are the transform unit's (VTX-5), all else is in words of [`number::light`](crate::number::light).
 
 use super::unit::{self, words};
-use crate::number::light::{ONE, SIGN, dot, product, reciprocal, single_product, single_sum, sum, word};
+use crate::number::light::{
+    ONE, SIGN, add_product, dot, multiply_add, product, reciprocal, single_product, single_sum, sum, word,
+};
 use crate::number::transform::{self, is_negative};
 
 /// Where a colour of the material comes from.
@@ -208,18 +210,18 @@ fn quotient(numerator: u32, factor: u32, divisor: u32) -> u32 {
     single_product(single_product(numerator, factor), reciprocal(divisor))
 }
 
-/// Returns the factor times (x + a) / (x b + c).
-fn bent(x: u32, [a, b, c]: [u32; 3], factor: u32) -> u32 {
-    quotient(single_sum(x, a), factor, single_sum(single_product(x, b), c))
-}
-
 impl Spot {
     /// Returns what of an attenuation the cone lets through in the direction to the light.
     fn through(&self, to_light: [u32; 3], attenuation: u32) -> u32 {
         let [x, y, z] = each(to_light, words(self.direction), transform::product);
         let x = transform::sum([x, y, z, self.offset.to_bits()]);
+        if is_negative(x) {
+            return 0;
+        }
         // No number is more than the middle of the cone, and NaN is no less.
-        if is_negative(x) { 0 } else { bent(word(x).min(ONE), converted(self.falloff), attenuation) }
+        let (x, [a, b, c]) = (word(x).min(ONE), converted(self.falloff));
+        // Unlike that of a far light, the divisor cuts the falloff's word.
+        quotient(single_sum(x, a), attenuation, multiply_add(b, x, c))
     }
 }
 
@@ -276,15 +278,15 @@ impl Lighting {
         };
         for (light, colors) in self.lights.iter().zip(&side.colors) {
             let shares = self.shares(light, side, surface);
-            let arriving = |share: u32, color: [f32; 3], material: Option<[u32; 3]>| {
-                let light = each([share; 3], converted(color), product);
-                material.map_or(light, |material| each(light, material, product))
+            let add_light = |total: &mut [u32; 3], share: u32, color: [f32; 3], material: Option<[u32; 3]>| {
+                let (share, color) = ([share; 3], converted(color));
+                let (a, b) = material.map_or((share, color), |material| (each(share, color, product), material));
+                *total = std::array::from_fn(|k| add_product(total[k], a[k], b[k]));
             };
             let [a, d, s] = *colors;
-            primary = each(primary, arriving(shares.ambient, a, ambient), add);
-            primary = each(primary, arriving(shares.diffuse, d, diffuse), add);
-            let total = secondary.as_mut().unwrap_or(&mut primary);
-            *total = each(*total, arriving(shares.specular, s, specular), add);
+            add_light(&mut primary, shares.ambient, a, ambient);
+            add_light(&mut primary, shares.diffuse, d, diffuse);
+            add_light(secondary.as_mut().unwrap_or(&mut primary), shares.specular, s, specular);
         }
         (primary, secondary)
     }
@@ -313,14 +315,16 @@ impl Lighting {
         let [a, b, c, d, e, f] = converted(side.powers);
         let specular = match *light {
             Light::Infinite { half, .. } if !self.local_eye => {
-                bent(dot(normal, converted(half)), [a, b, c], attenuation)
+                let x = dot(normal, converted(half));
+                quotient(single_sum(x, a), attenuation, multiply_add(x, b, c))
             }
             _ => self.highlight([d, e, f], surface, normal, to_light, attenuation),
         };
         Shares { ambient: attenuation, diffuse: product(attenuation, facing), specular }
     }
 
-    /// Returns the factor times (x + d) / (x e + f) of the square x of the product of the normal and the half vector.
+    /// Returns the factor times (y d + x) / (y f + x e) of the squares x of the product of the normal and the half vector, and y of
+    /// the half vector.
     fn highlight(
         &self,
         [d, e, f]: [u32; 3],
@@ -337,8 +341,8 @@ impl Lighting {
             return 0;
         }
         let x = single_product(along, along);
-        let divisor = single_sum(single_product(x, e), single_product(square, f));
-        quotient(single_sum(x, single_product(square, d)), factor, divisor)
+        let divisor = multiply_add(square, f, single_product(x, e));
+        quotient(multiply_add(square, d, x), factor, divisor)
     }
 }
 

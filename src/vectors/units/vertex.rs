@@ -1,7 +1,7 @@
 //! The fixed-function pipe: arithmetic of the transform and the light unit, and lights.
 
 use super::{Column, Conditions, Kind, Reach, Unit, channels, float, put, sized};
-use ninebit::number::light::{dot, reciprocal, single_product, single_sum, word};
+use ninebit::number::light::{add_product, dot, multiply_add, reciprocal, single_product, single_sum, word};
 use ninebit::number::transform;
 use ninebit::vertex::light::{ColorSource, Light, Lighting, SecondaryColor, Shading, Side, Sources, Spot, Surface};
 
@@ -55,9 +55,12 @@ pub(super) struct LightArithmetic;
 impl Unit for LightArithmetic {
     known_as!(
         "light-arithmetic", &["VTX-6"],
-        "a . b of vectors of words, and a.x + b.x, a.x b.x and 1/a.x in the part for single numbers", Inside;
+        "a . b of vectors of words; a.x + b.x, a.x b.x, 1/a.x and a.x b.x + a.y in the part for single numbers; a.y + a.x b.x in that for vectors", Inside;
         takes [vectors(["in.a", "in.b"])];
-        gives [Column::results(["out.dot", "out.sum", "out.product", "out.reciprocal"], Kind::Hex(32))]
+        gives [
+            Column::results(["out.dot", "out.sum", "out.product", "out.reciprocal"], Kind::Hex(32)),
+            Column::results(["out.multiply_add", "out.add_product"], Kind::Hex(32)),
+        ]
     );
 
     fn fit(&self, inputs: &mut [i64]) {
@@ -69,7 +72,9 @@ impl Unit for LightArithmetic {
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         let [a, b] = [0, 3].map(|first| [0, 1, 2].map(|n| word(inputs[first + n] as u32)));
-        put(results, [dot(a, b), single_sum(a[0], b[0]), single_product(a[0], b[0]), reciprocal(a[0])]);
+        let ([x, y, _], [factor, ..]) = (a, b);
+        let single = [single_sum(x, factor), single_product(x, factor), reciprocal(x), multiply_add(x, factor, y)];
+        put(results, [dot(a, b)].into_iter().chain(single).chain([add_product(y, x, factor)]));
     }
 }
 
