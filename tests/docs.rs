@@ -36,7 +36,7 @@ fn variables_of_tests_are_listed() {
 
 /// Largest number of words in all documents that are written and maintained by hand, as opposed to those that a program writes or a test
 /// checks row by row.
-const MAX_WORDS: usize = 37_950;
+const MAX_WORDS: usize = 38_000;
 
 /// Templates that programs fill in. They count as written by hand.
 const TEMPLATES: [&str; 2] = ["src/lab/chart/page.md", "src/lab/experiments/page.md"];
