@@ -73,7 +73,7 @@ impl Image {
         let mut image =
             Image { profile, kind, format, sides, levels, layers, border, words: Vec::new(), palette: Vec::new() };
         let faces = if kind == TextureKind::Cube { CUBE_FACES } else { layers } as usize;
-        let bits = if format.is_compressed() { 32 } else { 8 * format.bytes() };
+        let bits = format.word_bits();
         image.words = (0..faces * image.face_words()).map(|_| word(next) >> (32 - bits)).collect();
         if format == TextureFormat::P8 {
             let entries = if nv2a { 32 << (next() % 4) } else { 256 };

@@ -1,7 +1,7 @@
 //! TSH-1 to TSH-9, TEX-12: cube maps, dot products, reflections, bump maps and their luminance, dependent reads.
 
 use super::space::{DEGREES_45, DEGREES_225, Matrix, STRAIGHT};
-use super::texel_formats::{Variant, packed, texture, variants};
+use super::texel_formats::{Variant, converting, packed, texture, variants};
 use super::*;
 use images::{Color, four_gradients, gradient, luminance, solid};
 
@@ -373,7 +373,8 @@ fn bumped(
         let unit = TextureUnit { signed, ..bilinear(bumps) };
         let operation = ShaderOperation::BumpEnvironment { matrix, luminance: with_luminance };
         let draw = with_sets(square_at(place), sets, 1);
-        canvas.draw(shaded(draw, unit, &[operation], DotMapping::ZeroToOne, nearest(field)));
+        let draw = shaded(draw, unit, &[operation], DotMapping::ZeroToOne, nearest(field));
+        canvas.draw(converting(format, draw));
     }
 }
 

@@ -1,4 +1,4 @@
-//! TEX-1 to TEX-4, TEX-9, TEX-18: texel formats, palettes, signed channels and mip levels.
+//! TEX-1 to TEX-4, TEX-9, TEX-18, TEX-19: texel formats, palettes, signed channels, mip levels and conversion from YUV.
 
 use super::*;
 use images::{Color, Image, bulge, gradient, grey};
@@ -14,7 +14,7 @@ const SIDE: u32 = 256;
 const SIZE: [u32; 2] = [SIDE; 2];
 
 /// Names of formats in those of frames, the format, and whether there is also a frame with coordinates in texels.
-const FORMATS: [(&str, TextureFormat, bool); 17] = [
+const FORMATS: [(&str, TextureFormat, bool); 19] = [
     ("A8R8G8B8", TextureFormat::A8R8G8B8, true),
     ("A8B8G8R8", TextureFormat::A8B8G8R8, true),
     ("B8G8R8A8", TextureFormat::B8G8R8A8, true),
@@ -32,6 +32,8 @@ const FORMATS: [(&str, TextureFormat, bool); 17] = [
     ("A8Y8", TextureFormat::A8L8, false),
     ("Y16", TextureFormat::Y16, true),
     ("R6G5B5", TextureFormat::R6G5B5, false),
+    ("YUY2", TextureFormat::Yuy2, true),
+    ("UYVY", TextureFormat::Uyvy, true),
 ];
 
 /// A format of the frames: its name there, whether its texture is grey, and whether its coordinates are in texels.
@@ -49,17 +51,27 @@ impl Variant {
     }
 }
 
-/// Returns all formats, with both kinds of coordinates where there are frames of both.
+/// Returns all formats, with both kinds of coordinates where there are frames of both. Those of pairs have coordinates in texels only.
 pub(super) fn variants() -> impl Iterator<Item = Variant> {
     let formats = FORMATS.into_iter().chain([("A8", TextureFormat::A8, true)]);
     formats.flat_map(|(base, format, both)| {
         use TextureFormat::{A8L8, I8, L8, Y16};
         let variant = |in_texels| Variant { base, format, is_grey: matches!(format, L8 | I8 | A8L8 | Y16), in_texels };
-        [Some(variant(false)), both.then(|| variant(true))].into_iter().flatten()
+        [(!format.is_paired()).then(|| variant(false)), both.then(|| variant(true))].into_iter().flatten()
     })
 }
 
-/// Returns an image as words. For 16-bit channels the programs write each byte twice, and for luminance they scale it.
+/// Returns Y, Cb and Cr of a colour as the programs compute them, in floats that are cut.
+fn as_yuv([r, g, b, _]: Color) -> [u32; 3] {
+    let [r, g, b] = [r, g, b].map(f32::from);
+    let y = 0.257 * r + 0.504 * g + 0.098 * b + 16.0;
+    let cb = -(0.148 * r) - 0.291 * g + 0.439 * b + 128.0;
+    let cr = 0.439 * r - 0.368 * g - 0.071 * b + 128.0;
+    [y, cb, cr].map(|value| value as u32)
+}
+
+/// Returns an image as words. For 16-bit channels the programs write each byte twice, for luminance they scale it, and a pair takes the chroma of its
+/// second texel.
 pub(super) fn packed(format: TextureFormat, size: [u32; 2], image: impl Image) -> Vec<u32> {
     let wide = |color: Color| match format {
         TextureFormat::R16B16 => {
@@ -69,7 +81,20 @@ pub(super) fn packed(format: TextureFormat, size: [u32; 2], image: impl Image) -
         TextureFormat::Y16 => (f32::from(color[0]) / 255.0 * 65535.0) as u32,
         _ => ninebit_files::texels::word(color, format),
     };
+    let paired = |(x, y): (u32, u32)| {
+        let [luma, ..] = as_yuv(image(x, y));
+        let [_, cb, cr] = as_yuv(image(x | 1, y));
+        luma << 16 | cb << 8 | cr
+    };
+    if format.is_paired() {
+        return images::each_texel(size).map(paired).collect();
+    }
     images::each_texel(size).map(|(x, y)| wide(image(x, y))).collect()
+}
+
+/// Returns the draw, converted from YUV if the texture has pairs (TEX-19).
+pub(super) fn converting(format: TextureFormat, draw: Draw) -> Draw {
+    Draw { convert_yuv: format.is_paired(), ..draw }
 }
 
 /// Returns a texture of the given words, with coordinates in texels or normalised.
@@ -164,8 +189,10 @@ fn pictures(six_bits: TextureFormat) -> Vec<(String, Box<dyn Fn() -> Pictured + 
 pub(super) fn formats(frames: &mut Frames) {
     for (name, picture) in pictures(TextureFormat::R5G6B5) {
         frames.paint(name, 0xfe20_2020, move |canvas| {
-            let (unit, side) = unit(canvas, picture());
-            canvas.draw(square(side, unit));
+            let picture = picture();
+            let format = picture.0.format;
+            let (unit, side) = unit(canvas, picture);
+            canvas.draw(converting(format, square(side, unit)));
         });
     }
 }
@@ -174,10 +201,12 @@ pub(super) fn formats(frames: &mut Frames) {
 pub(super) fn render_targets(frames: &mut Frames) {
     for (name, picture) in pictures(TextureFormat::R6G5B5) {
         frames.paint(name, 0xfe21_2021, move |canvas| {
-            let (unit, side) = unit(canvas, picture());
+            let picture = picture();
+            let format = picture.0.format;
+            let (unit, side) = unit(canvas, picture);
             let target = canvas.target(Target::new(SIDE, SIDE, SurfaceFormat::A8R8G8B8));
             let whole = pasted([0.0, 0.0, SIDE as f32, SIDE as f32], 0, unit, [0.0, 0.0, side, side]);
-            canvas.draw_into(target, [without_alpha(whole, FETCHED[0])]);
+            canvas.draw_into(target, [converting(format, without_alpha(whole, FETCHED[0]))]);
             let shown = canvas.shown(target, TextureKind::TwoDimensional, TextureFormat::A8R8G8B8);
             let [left, top, _, w] = space::fixed_function([-1.75, 1.75, 0.1, 1.0]);
             let [right, bottom, ..] = space::fixed_function([1.75, -1.75, 0.1, 1.0]);

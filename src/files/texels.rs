@@ -5,11 +5,34 @@ use ninebit::texture::format::expand;
 
 /// Returns the bits of a word that the format uses. The others are zero in the state.
 pub fn used_bits(format: TextureFormat) -> u32 {
-    if can_pack(format) { word([255; 4], format) } else { u32::MAX >> (32 - 8 * format.bytes().min(4)) }
+    if can_pack(format) { word([255; 4], format) } else { u32::MAX >> (32 - format.word_bits()) }
 }
 
-/// Converts texels or blocks in memory, little-endian, into words of the state. Bytes of an incomplete texel are ignored.
+/// Places of Y, Cb, Y and Cr among the bytes of a pair.
+fn pair_order(format: TextureFormat) -> [usize; 4] {
+    if format == TextureFormat::Uyvy { [1, 0, 3, 2] } else { [0, 1, 2, 3] }
+}
+
+/// Converts a pair of texels in memory into its words.
+fn pair_words(bytes: [u8; 4], format: TextureFormat) -> [u32; 2] {
+    let [first, cb, second, cr] = pair_order(format).map(|at| u32::from(bytes[at]));
+    [first, second].map(|y| y << 16 | cb << 8 | cr)
+}
+
+/// Converts the words of a pair into its bytes. Its chroma is that of the first.
+fn pair_bytes([first, second]: [u32; 2], format: TextureFormat) -> [u8; 4] {
+    let mut bytes = [0; 4];
+    for (at, value) in pair_order(format).into_iter().zip([first >> 16, first >> 8, second >> 16, first]) {
+        bytes[at] = value as u8;
+    }
+    bytes
+}
+
+/// Converts texels or blocks in memory, little-endian, into words of the state. Bytes of an incomplete texel or pair are ignored.
 pub fn from_bytes(bytes: &[u8], format: TextureFormat) -> Vec<u32> {
+    if format.is_paired() {
+        return bytes.as_chunks().0.iter().flat_map(|pair| pair_words(*pair, format)).collect();
+    }
     let used = used_bits(format);
     let stored = |word: u32| stored(word & used, format);
     match format.bytes() {
@@ -21,6 +44,9 @@ pub fn from_bytes(bytes: &[u8], format: TextureFormat) -> Vec<u32> {
 
 /// Converts words of the state into texels or blocks in memory, as [`from_bytes`] reads them.
 pub fn to_bytes(words: &[u32], format: TextureFormat) -> Vec<u8> {
+    if format.is_paired() {
+        return words.as_chunks().0.iter().flat_map(|pair| pair_bytes(*pair, format)).collect();
+    }
     let bytes = format.bytes().min(4) as usize;
     words.iter().flat_map(|word| in_memory(*word, format).to_le_bytes().into_iter().take(bytes)).collect()
 }
@@ -47,9 +73,16 @@ pub fn can_pack(format: TextureFormat) -> bool {
     format != TextureFormat::P8 && !format.is_compressed() && format.depth().is_none()
 }
 
-/// Packs pixels with 8 bits a channel into words. Low bits that do not fit are cut off, and channels that the format lacks are dropped.
+/// Packs pixels with 8 bits a channel into words. Low bits that do not fit are cut off, and channels that the format lacks are dropped. Pairs take
+/// the chroma, which is green and blue, of their first pixel; rows then have an even number.
 pub fn pack(pixels: &[[u8; 4]], format: TextureFormat) -> Vec<u32> {
-    pixels.iter().map(|pixel| word(*pixel, format)).collect()
+    let mut words: Vec<u32> = pixels.iter().map(|pixel| word(*pixel, format)).collect();
+    if format.is_paired() {
+        for [first, second] in words.as_chunks_mut().0 {
+            *second = *second & 0x00ff_0000 | *first & 0xffff;
+        }
+    }
+    words
 }
 
 /// Packs a pixel R, G, B, A into a word of the format.
@@ -57,7 +90,7 @@ pub fn word(pixel: [u8; 4], format: TextureFormat) -> u32 {
     let [r, g, b, a] = pixel.map(u32::from);
     match format {
         TextureFormat::A8R8G8B8 | TextureFormat::R16B16 => a << 24 | r << 16 | g << 8 | b,
-        TextureFormat::X8R8G8B8 => r << 16 | g << 8 | b,
+        TextureFormat::X8R8G8B8 | TextureFormat::Yuy2 | TextureFormat::Uyvy => r << 16 | g << 8 | b,
         TextureFormat::A8B8G8R8 => a << 24 | b << 16 | g << 8 | r,
         TextureFormat::B8G8R8A8 => b << 24 | g << 16 | r << 8 | a,
         TextureFormat::R8G8B8A8 => r << 24 | g << 16 | b << 8 | a,
@@ -99,7 +132,9 @@ pub fn halve(words: &[u32], width: u32, height: u32, format: TextureFormat) -> V
         | TextureFormat::A8L8
         | TextureFormat::G8B8
         | TextureFormat::R8B8 => smaller(words, width, height, mean_of_bytes),
-        TextureFormat::X8R8G8B8 => smaller(words, width, height, |texels| mean_of_bytes(texels) & 0x00ff_ffff),
+        TextureFormat::X8R8G8B8 | TextureFormat::Yuy2 | TextureFormat::Uyvy => {
+            smaller(words, width, height, |texels| mean_of_bytes(texels) & 0x00ff_ffff)
+        }
         format => smaller(words, width, height, |texels| mean_as_read(texels, format)),
     }
 }
@@ -171,14 +206,19 @@ mod tests {
         assert_eq!(from_bytes(&bytes, TextureFormat::X1R5G5B5), [0x0201, 0x0403]);
         assert_eq!(from_bytes(&bytes, TextureFormat::A8R8G8B8), [0x8403_0201]);
         assert_eq!(from_bytes(&bytes, TextureFormat::X8R8G8B8), [0x0003_0201]);
+        assert_eq!(from_bytes(&bytes, TextureFormat::Yuy2), [0x0001_0284, 0x0003_0284]);
+        assert_eq!(from_bytes(&bytes, TextureFormat::Uyvy), [0x0002_0103, 0x0084_0103]);
         assert_eq!(from_bytes(&[1, 2, 3, 4, 5, 6, 7, 8], TextureFormat::Dxt1), [0x0403_0201, 0x0807_0605]);
     }
 
     #[test]
     fn memory_is_read_as_it_was_written() {
         for format in TextureFormat::ALL.iter().copied() {
-            let words: Vec<u32> =
-                (0..999_u32).map(|n| stored(n.wrapping_mul(0x9e37_79b1) & used_bits(format), format)).collect();
+            let mut words: Vec<u32> =
+                (0..998_u32).map(|n| stored(n.wrapping_mul(0x9e37_79b1) & used_bits(format), format)).collect();
+            if format.is_paired() {
+                words = pack(&words.iter().map(|word| expand(format, *word)).collect::<Vec<_>>(), format);
+            }
             let bytes = to_bytes(&words, format);
             assert_eq!(bytes.len(), words.len() * format.bytes().min(4) as usize, "{format:?}");
             assert_eq!(from_bytes(&bytes, format), words, "{format:?}");

@@ -7,7 +7,7 @@ use ninebit::state::{CompareFunction, Scene};
 use crate::code::{Code, Operand, Test};
 use crate::input::Input;
 use crate::number::{Number, Word};
-use crate::pixel::{Builder, Function, Options, Result, UNBOUND, is_idle, loaded};
+use crate::pixel::{Builder, Function, Options, Result, UNBOUND, converted, is_idle, loaded};
 use crate::place::{Place, Projection, Unit};
 use crate::stage::Stages;
 use crate::truth::Truth;
@@ -41,7 +41,7 @@ impl Function {
             Stages { whole: &whole, shader, scale, quad, first }.run(&sample)
         });
         let mut dropped = shader.map_or(Truth::Known(false), |(_, dropped)| dropped);
-        let registers = loaded([colors[0], colors[1], fog], |n| {
+        let mut register = |n: usize| {
             if let Some((registers, _)) = shader {
                 return registers[n];
             }
@@ -53,7 +53,8 @@ impl Function {
             let (register, drops) = Unit::new(&whole, unit, &sample, quad, &|_| Place::Own(projection)).register();
             dropped = dropped | drops;
             register
-        });
+        };
+        let registers = loaded([colors[0], colors[1], fog], |n| converted(&code, draw, register(n)));
         let fragment = builder.fragment(&draw.combiners, registers);
         let alpha = builder.alpha_test(draw, fragment).map_or(Truth::Known(true), |test| Truth::new(&code, test));
         let never = planned.folded.invisible.is_some();

@@ -6,6 +6,7 @@ use ninebit::plan::PlannedDraw;
 use ninebit::rop::{blend, surface};
 use ninebit::state::*;
 use ninebit::texture::planned::PlannedUnit;
+use ninebit::texture::yuv;
 
 use crate::code::{Code, Line, Operand, Operation, Range, Test, collected};
 use crate::input::Input;
@@ -189,6 +190,17 @@ pub(crate) fn loaded<'a>(
 /// TEX-16: what a unit without a texture gives: opaque black.
 pub(crate) const UNBOUND: [Number<'static>; 4] = [Number::ZERO, Number::ZERO, Number::ZERO, Number::ONE];
 
+/// TEX-19: returns the register of a unit, converted from YUV if the draw says so.
+pub(crate) fn converted<'a>(code: &'a Code, draw: &Draw, register: [Number<'a>; 4]) -> [Number<'a>; 4] {
+    let [y, cb, cr, alpha] = register;
+    if !draw.convert_yuv {
+        return register;
+    }
+    code.by("TEX-19");
+    let [r, g, b] = [0, 1, 2].map(|channel| yuv::converted(channel, [y, cb, cr]));
+    [r, g, b, alpha]
+}
+
 /// Returns whether unit `n` of a draw has no texture where it needs one.
 pub(crate) fn is_idle(draw: &Draw, n: usize) -> bool {
     match draw.texture_shader[n].operation {
@@ -220,14 +232,15 @@ impl Function {
         let factor = if draw.fog.enabled { builder.input(Input::Fog(3)) } else { Number::ONE };
         let registers = builder.registers([r, g, b, factor], |n| {
             if is_idle(draw, n) {
-                return UNBOUND;
+                return converted(&code, draw, UNBOUND);
             }
             let unit = planned.units.iter().find(|unit| unit.index == n);
             match unit {
                 Some(unit) if options.textures == Textures::Words && planned.shader.is_none() && reads_words(unit) => {
                     let sampler = Sampler::new(unit);
                     let border = builder.constants(unit.state.border_color, |c| Input::BorderColor(n, c));
-                    sampler.register(border, &CallerTexels(n, |input| builder.input(input)), &code).0
+                    let register = sampler.register(border, &CallerTexels(n, |input| builder.input(input)), &code).0;
+                    converted(&code, draw, register)
                 }
                 // Only signed channels, and results of texture shaders, can be negative.
                 Some(unit) if unit.state.signed == [false; 4] && planned.shader.is_none() => {

@@ -180,11 +180,17 @@ mod tests {
             (TextureFormat::L8, [4, 4, 4], Layout::Swizzled),
             (TextureFormat::A8R8G8B8, [5, 3, 1], Layout::Pitch(64)),
             (TextureFormat::Dxt1, [8, 8, 1], Layout::Swizzled),
+            (TextureFormat::Yuy2, [6, 3, 1], Layout::Pitch(64)),
+            (TextureFormat::Uyvy, [6, 3, 1], Layout::Pitch(12)),
         ];
         for (format, size, layout) in cases {
             let count = format.words(size[0], size[1]) * size[2] as usize;
-            let largest = if format.is_compressed() { u32::MAX } else { ((1_u64 << (8 * format.bytes())) - 1) as u32 };
-            let all: Vec<u32> = (0..count as u32).map(|n| n.wrapping_mul(0x9e37_79b9) & largest).collect();
+            let largest = u32::MAX >> (32 - format.word_bits());
+            let noise = |n: u32| n.wrapping_mul(0x9e37_79b9) & largest;
+            // Both texels of a pair have the chroma of the first.
+            let shared =
+                |n: u32| if format.is_paired() { noise(n) & !0xffff | noise(n & !1) & 0xffff } else { noise(n) };
+            let all: Vec<u32> = (0..count as u32).map(shared).collect();
             let mut image = vec![0xee; 16];
             image.extend(bytes(&all, format, size, layout));
             let memory = Memory::new(image);

@@ -259,6 +259,16 @@ pub(super) fn expression(step: &Step) -> String {
         "float_double" => format!("2 * {}", value(0)),
         "float_reflection" => format!("{} * {} - {} * {}", value(0), value(1), value(2), value(3)),
         "luminance" => format!("4096 * {} / 255 * ({} / 255 * {} + {})", value(0), value(1), value(2), value(3)),
+        "convert_yuv_red" => {
+            format!("(149 * {} >> 7) + 2 * (409 * {} >> 9) - 223, limited to 0..255", value(0), value(2))
+        }
+        "convert_yuv_green" => format!(
+            "(149 * {} >> 7) - 2 * (100 * {} >> 9) - 2 * (208 * {} >> 9) + 136, limited to 0..255",
+            value(0),
+            value(1),
+            value(2)
+        ),
+        "convert_yuv_blue" => format!("(149 * {} >> 7) + (129 * {} >> 6) - 277, limited to 0..255", value(0), value(1)),
         "bump_offset" => format!("{} * s8({}) + {} * s8({})", value(0), value(2), value(1), value(3)),
         "nearest_texel" => format!("{} >> 8", value(0)),
         "linear_texel" => format!("({} - 128) >> 8", value(0)),

@@ -55,7 +55,7 @@ pub struct Dds {
 impl Dds {
     /// Returns the words reinterpreted in another format of the same size; `None` if that is impossible, as with compressed blocks.
     pub fn words_as(&self, format: TextureFormat) -> Option<Vec<u32>> {
-        let blocks = format.is_compressed() || self.format.is_compressed();
+        let blocks = format.is_compressed() || format.is_paired() || self.format.is_compressed();
         if format != self.format && (blocks || format.bytes() != self.format.bytes()) {
             return None;
         }

@@ -136,6 +136,7 @@ pub const OPERATIONS: &[(&str, &str, u32, &[&str])] = &[
             "compressed-block/dxt5-alpha-codes2",
         ],
     ),
+    ("yuv-conversion", "a colour", 24, &["yuv-conversion"]),
     ("color-key", "a texel and a key in a mode, by format", 64, &[]),
     ("shadow-comparison", "r, q and a texel by a function", 95, &[]),
     ("filtered-key", "a key and four texels by two weights, by a reading", 176, &[]),

@@ -311,6 +311,7 @@ fn draw(c: &mut Choices<'_>, given: &SceneParts<'_>, n: u32) -> Draw {
         fog,
         textures,
         texture_shader,
+        convert_yuv: false,
         alpha_test: c.once_in(5).then(|| AlphaTest { function: c.any(), reference: c.byte() }),
         depth_test: (surface.depth.is_some() && c.below(3) != 0).then(|| {
             let function = if c.once_in(2) { c.any() } else { CompareFunction::LessOrEqual };

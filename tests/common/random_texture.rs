@@ -13,7 +13,7 @@ fn formats(profile: Profile, kind: TextureKind) -> Vec<TextureFormat> {
         }
         (Profile::Nv10, _) => !f.is_nv2a_only(),
         (Profile::Nv2a, TextureKind::Rectangle) => !f.is_compressed() && f != TextureFormat::P8,
-        (Profile::Nv2a, _) => true,
+        (Profile::Nv2a, _) => !f.is_paired(),
     };
     // Depth formats are used by the wider scenes only.
     TextureFormat::ALL.iter().copied().filter(|f| legal(*f) && f.depth().is_none()).collect()
@@ -40,9 +40,14 @@ pub(super) fn filled(
 ) -> TextureImage {
     let faces = if kind == TextureKind::Cube { CUBE_FACES } else { 1 };
     let (_, face_words) = Level::chain(format, sides.width, sides.height, sides.levels, sides.border);
-    let mask = if format.is_compressed() { u32::MAX } else { u32::MAX >> (32 - 8 * format.bytes()) };
+    let mask = u32::MAX >> (32 - format.word_bits());
     let word = |k: u32| if even { seed.wrapping_add(step.wrapping_mul(k)) } else { scrambled(seed, k) };
-    let words = (0..faces * sides.layers * face_words as u32).map(|k| word(k) & mask).collect();
+    // The second texel of a pair has the chroma of the first.
+    let shared = |k: u32| match format.is_paired() && k % 2 == 1 {
+        true => word(k) & !0xffff | word(k - 1) & 0xffff,
+        false => word(k),
+    };
+    let words = (0..faces * sides.layers * face_words as u32).map(|k| shared(k) & mask).collect();
     TextureImage::Texels(Texels { words, ..sides })
 }
 
@@ -60,7 +65,7 @@ pub(super) fn texels(c: &mut Choices<'_>, profile: Profile, n: u32) -> Texture {
     match (kind, profile) {
         (TextureKind::Cube, _) => width = height,
         // Nv10 requires an even width.
-        (TextureKind::Rectangle, Profile::Nv10) => width += width & 1,
+        (TextureKind::Rectangle, _) if profile == Profile::Nv10 || format.is_paired() => width += width & 1,
         _ => {}
     }
     let most = if kind == TextureKind::Rectangle { 1 } else { Level::most(width, height) };
@@ -86,7 +91,9 @@ pub(super) fn view(c: &mut Choices<'_>, profile: Profile, n: usize, target: &Tar
     let kind = if squares && c.below(3) != 0 { TextureKind::TwoDimensional } else { TextureKind::Rectangle };
     let fitting: Vec<TextureFormat> = formats(profile, kind)
         .into_iter()
-        .filter(|f| f.bytes() == target.format.bytes() && !f.is_compressed() && *f != TextureFormat::P8)
+        .filter(|f| {
+            f.bytes() == target.format.bytes() && !f.is_compressed() && !f.is_paired() && *f != TextureFormat::P8
+        })
         .collect();
     if !small || fitting.is_empty() || (kind == TextureKind::Rectangle && !even) {
         return None;

@@ -271,6 +271,12 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         "bump_offset" => shader::bump_offset(inputs),
         "floor_moved" => weights::moved(inputs),
         "luminance" => Number::new(shader::luminance(inputs), 4096),
+        "convert_yuv_red" => byte((luma(v(0)) + 2 * (409 * v(2)).div_euclid(512) - 223).clamp(0, 255)),
+        "convert_yuv_green" => {
+            let chroma = (100 * v(1)).div_euclid(512) + (208 * v(2)).div_euclid(512);
+            byte((luma(v(0)) - 2 * chroma + 136).clamp(0, 255))
+        }
+        "convert_yuv_blue" => byte((luma(v(0)) + (129 * v(1)).div_euclid(64) - 277).clamp(0, 255)),
         "luminance_byte" => byte(((v(0) - (v(0) >> 8)) >> 4).min(255)),
         // Combiners.
         "unsigned_identity" => byte(max0(0)),
@@ -486,6 +492,11 @@ fn log2_ratio(uv: [i128; 6]) -> i128 {
     log - 4096
 }
 
+/// Returns the first term of a conversion from YUV.
+fn luma(y: i128) -> i128 {
+    (149 * y).div_euclid(128)
+}
+
 fn channel(letter: &str) -> Option<usize> {
     ["r", "g", "b", "a"].iter().position(|l| *l == letter)
 }
@@ -505,13 +516,15 @@ fn fields(format: &str) -> Option<Vec<(char, u32)>> {
 }
 
 fn is_format(name: &str) -> bool {
-    fields(name).is_some_and(|fields| [8, 16, 32].contains(&fields.iter().map(|(_, bits)| bits).sum::<u32>()))
+    ["YUY2", "UYVY"].contains(&name)
+        || fields(name).is_some_and(|fields| [8, 16, 32].contains(&fields.iter().map(|(_, bits)| bits).sum::<u32>()))
 }
 
 /// Returns a channel of a texel, which the name of the format describes.
 fn texel(format: &str, word: i128, letter: &str) -> Option<i128> {
     let c = channel(letter)?;
     match format {
+        "YUY2" | "UYVY" => return Some([word >> 16 & 255, word >> 8 & 255, word & 255, 255][c]),
         "G8B8" => return Some([word & 255, word >> 8, word & 255, word >> 8][c]),
         "R8B8" => return Some([word >> 8, word & 255, word & 255, word >> 8][c]),
         _ => {}

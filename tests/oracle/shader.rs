@@ -44,7 +44,10 @@ impl<'a> Units<'a> {
             _ => true,
         });
         count("fragment", if kept { "kept" } else { "culled" });
-        kept.then(|| [0, 1, 2, 3].map(|k| self.unit(k, i, j, sample).register))
+        kept.then(|| {
+            let registers = [0, 1, 2, 3].map(|k| self.unit(k, i, j, sample).register);
+            if self.draw.convert_yuv { registers.map(from_yuv) } else { registers }
+        })
     }
 
     /// TSH-10: returns whether a unit drops the fragment by the signs of its coordinates.
@@ -210,6 +213,18 @@ impl<'a> Units<'a> {
         self.lods.borrow_mut().insert(key, lod);
         lod
     }
+}
+
+/// TEX-19: returns the colour of a register with Y, Cb, Cr and alpha.
+fn from_yuv([y, cb, cr, alpha]: [i128; 4]) -> [i128; 4] {
+    count("register", "converted");
+    let part = |factor: i128, value: i128, divisor: i128| (factor * value).div_euclid(divisor);
+    let light = part(149, y, 128);
+    let red = light + 2 * part(409, cr, 512) - 223;
+    let green = light - 2 * part(100, cb, 512) - 2 * part(208, cr, 512) + 136;
+    let blue = light + part(129, cb, 64) - 277;
+    let [red, green, blue] = [red, green, blue].map(|value| value.clamp(0, 255));
+    [red, green, blue, alpha]
 }
 
 /// TSH-1 to TSH-3: returns the vector of a texel's bytes.

@@ -24,6 +24,8 @@ pub fn bytes(format: TextureFormat, word: u32) -> [i128; 4] {
     match format {
         TextureFormat::A8R8G8B8 => [byte(2), byte(1), byte(0), byte(3)],
         TextureFormat::X8R8G8B8 => [byte(2), byte(1), byte(0), 255],
+        // Y, Cb, Cr
+        TextureFormat::Yuy2 | TextureFormat::Uyvy => [byte(2), byte(1), byte(0), 255],
         TextureFormat::A8B8G8R8 => [byte(0), byte(1), byte(2), byte(3)],
         TextureFormat::B8G8R8A8 => [byte(1), byte(2), byte(3), byte(0)],
         TextureFormat::R8G8B8A8 => [byte(3), byte(2), byte(1), byte(0)],

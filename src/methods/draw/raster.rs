@@ -7,7 +7,7 @@ use ninebit::state::{
     WindowClip,
 };
 use ninebit_program::registers::unit::{
-    CLAMPS_DEPTH, FOG_MODES, PERSPECTIVE, STENCIL_OPERATIONS, STENCIL_WRITE, W_BUFFER,
+    CLAMPS_DEPTH, CONVERSION, FOG_MODES, PERSPECTIVE, STENCIL_OPERATIONS, STENCIL_WRITE, W_BUFFER,
 };
 use ninebit_program::registers::{color_of, raster};
 
@@ -68,6 +68,11 @@ pub(crate) fn state(view: &mut View<'_>, depth: DepthFormat, draw: &mut Draw) ->
     let control = view.get(class::SET_CONTROL0);
     tests(view, depth, control, draw);
     draw.perspective = PERSPECTIVE.is_set(control);
+    match CONVERSION.value_in(control) {
+        0 => {}
+        1 => draw.convert_yuv = true,
+        other => view.note(Gap::NotModelled(format!("conversion {other} of the units' colours"))),
+    }
     visible
 }
 

@@ -69,6 +69,10 @@ pub(crate) fn image(view: &mut View<'_>, unit: usize) -> Option<Image> {
             view.bad(of_unit(class::SET_TEXTURE_IMAGE_RECT, unit));
             return None;
         }
+        if texels.is_paired() && width % 2 == 1 {
+            view.note(Gap::NotModelled(format!("texels in pairs on an odd width at unit {unit}")));
+            return None;
+        }
         let (kind, pitch) = (TextureKind::Rectangle, Some(pitch));
         return Some(Image { address, kind, format: texels, size, levels: 1, border: false, pitch });
     }
@@ -183,7 +187,7 @@ impl Image {
     /// Returns the texels that stand for an image that is not known: one, white, of each face.
     pub(crate) fn absent(&self) -> Texels {
         let faces = if self.kind == TextureKind::Cube { CUBE_FACES as usize } else { 1 };
-        let bits = 8 * self.format.bytes();
+        let bits = self.format.word_bits();
         let word = if self.format.is_compressed() || bits == 32 { u32::MAX } else { (1 << bits) - 1 };
         let words: Vec<u32> = vec![word; self.format.words(1, 1) * faces];
         Texels { width: 1, height: 1, levels: 1, layers: 1, border: false, words: words.into() }

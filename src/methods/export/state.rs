@@ -6,7 +6,8 @@ use ninebit::state::{
     ProvokingVertex, Rectangle, Scene, ShadeModel, StencilTest, Target, Topology,
 };
 use ninebit_program::registers::unit::{
-    CLAMPS_DEPTH, FLOAT_DEPTH, FOG_MODES, PERSPECTIVE, STENCIL_OPERATIONS, STENCIL_WRITE, SURFACE_DEPTH, W_BUFFER,
+    CLAMPS_DEPTH, CONVERSION, FLOAT_DEPTH, FOG_MODES, PERSPECTIVE, STENCIL_OPERATIONS, STENCIL_WRITE, SURFACE_DEPTH,
+    W_BUFFER,
 };
 use ninebit_program::registers::{color_word, raster};
 
@@ -89,7 +90,8 @@ pub(super) fn draw(words: &mut Words, scene: &Scene, draw: &Draw) -> Result<(), 
     let control = STENCIL_WRITE.put(writes_stencil.into())
         | float_bit(target)
         | W_BUFFER.put(w_buffer.into())
-        | PERSPECTIVE.put(draw.perspective.into());
+        | PERSPECTIVE.put(draw.perspective.into())
+        | CONVERSION.put(draw.convert_yuv.into());
     words.set(class::SET_CONTROL0, control);
     figures(words, draw);
     fog(words, &draw.fog)?;

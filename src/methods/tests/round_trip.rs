@@ -161,3 +161,16 @@ fn captured_frames_come_back() {
     assert!(report.wrong.is_empty(), "{report}");
     assert!(10 * report.same.len() > 8 * count, "{report}");
 }
+
+/// Textures of pairs go as bytes of both orders, and the conversion as bits of the draw's state (TEX-19).
+#[test]
+fn video_comes_back() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../vectors/scenes/texture-shader/video.ron");
+    let scene = ninebit_scene::load(&path, &Limits::default()).unwrap().scene;
+    let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
+    let back = back(&export(&scene, &plan).unwrap(), &trace(&export(&scene, &plan).unwrap())).unwrap();
+    assert_eq!(back.draws.iter().map(|draw| draw.convert_yuv).collect::<Vec<_>>(), [true, true, true, false]);
+    for as_words in [false, true] {
+        assert_eq!(trip(&scene, &plan, as_words), Ok(None));
+    }
+}

@@ -15,7 +15,7 @@ use crate::state::*;
 use crate::texture::chain::Chain;
 use crate::texture::coordinates::VertexCoordinates;
 use crate::texture::planned::{Image, PlannedUnit};
-use crate::texture::unit;
+use crate::texture::{unit, yuv};
 use crate::trace::{Decision, Observer, Rule, Step, Work, report};
 use std::cell::OnceCell;
 
@@ -262,6 +262,10 @@ impl TriangleContext<'_> {
                 return None;
             }
             registers.load(UNITS[planned.index], value);
+        }
+        for n in (0..UNITS.len()).filter(|n| self.draw.yuv[*n]) {
+            let color = registers.values[UNITS[n] as usize];
+            registers.load(UNITS[n], yuv::convert(n, color, observer));
         }
         if O::ON {
             reports::undefined(self.draw.undefined, observer);

@@ -101,6 +101,15 @@ impl TextureChecks {
         if kind == TextureKind::Rectangle {
             return self.rectangle(format, [width, height], place);
         }
+        if format.is_paired() {
+            let message = format!("{what} cannot be {}", format.name());
+            return Some(
+                Diagnostic::error("NB0330", place, message)
+                    .label("a linear format")
+                    .rule("TEX-1")
+                    .help("write `kind: Rectangle`"),
+            );
+        }
         if !(width.is_power_of_two() && height.is_power_of_two()) {
             let next = |side: u32| side.checked_next_power_of_two().unwrap_or(most).min(most);
             let finding = Diagnostic::error("NB0219", place, cannot(what, [width, height]))
@@ -138,6 +147,9 @@ impl TextureChecks {
         } else if self.profile == Profile::Nv10 && width % 2 == 1 {
             let message = format!("a rectangle texture cannot be {width} x {height} on Nv10: its width is odd");
             (message, "make the width even, or write `profile: Nv2a`")
+        } else if format.is_paired() && width % 2 == 1 {
+            let message = format!("a texture of {} cannot be {width} x {height}: texels lie in pairs", format.name());
+            (message, "make the width even")
         } else {
             return None;
         };

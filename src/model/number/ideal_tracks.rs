@@ -167,6 +167,10 @@ impl<const N: usize> Lane for IdealTracks<N> {
         self.map(|track| track.multiplied(fixed, || factor))
     }
     #[inline(always)]
+    fn mixed(values: [Self; 3], _fixed: i32, real: impl Fn([f64; 3]) -> f64) -> Self {
+        IdealTracks(std::array::from_fn(|track| real(values.map(|value| value.0[track]))))
+    }
+    #[inline(always)]
     fn halfway(a: Self, b: Self) -> Self {
         a.zip(b, f64::halfway)
     }

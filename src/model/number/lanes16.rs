@@ -136,6 +136,10 @@ impl Lane for Lanes16<i32> {
         Lanes16::all(fixed)
     }
     #[inline(always)]
+    fn mixed(_values: [Self; 3], fixed: i32, _real: impl Fn([f64; 3]) -> f64) -> Self {
+        Lanes16::all(fixed)
+    }
+    #[inline(always)]
     fn halfway(a: Self, b: Self) -> Lanes16<Halves> {
         a.zip(b, i32::halfway)
     }

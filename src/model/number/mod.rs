@@ -160,6 +160,8 @@ pub trait Lane: Blend + Register<Factor = <Self as Lane>::Mapped, Expanded = <Se
     /// Multiplies a register by a real factor and limits it to 0..255 (TSH-8). The definition takes the integer `fixed`
     /// instead.
     fn multiplied(self, fixed: i32, factor: impl FnOnce() -> f64) -> Self;
+    /// Returns a value that depends on three registers (TEX-19). The definition takes the integer `fixed`, the ideal the function of its numbers.
+    fn mixed(values: [Self; 3], fixed: i32, real: impl Fn([f64; 3]) -> f64) -> Self;
     /// Returns the factor half way between two registers, keeping the half bit (CMB-4=127.5).
     fn halfway(a: Self, b: Self) -> Self::Mapped;
     /// Returns the negation, saturated to a register (-256 becomes 255).

@@ -103,6 +103,9 @@ impl<I: Ideal> Lane for Pair<I> {
     fn multiplied(self, fixed: i32, factor: impl FnOnce() -> f64) -> Self {
         Pair { fixed, ideal: self.ideal.multiplied(fixed, factor) }
     }
+    fn mixed(values: [Self; 3], fixed: i32, real: impl Fn([f64; 3]) -> f64) -> Self {
+        Pair { fixed, ideal: I::mixed(values.map(|value| value.ideal), fixed, real) }
+    }
     fn halfway(a: Self, b: Self) -> PairFactor<I> {
         Pair { fixed: i32::halfway(a.fixed, b.fixed), ideal: I::halfway(a.ideal, b.ideal) }
     }

@@ -99,6 +99,10 @@ macro_rules! real_lane {
                 (self * factor() as $real).clamp(0.0, 255.0)
             }
             #[inline(always)]
+            fn mixed(values: [$real; 3], _fixed: i32, real: impl Fn([f64; 3]) -> f64) -> $real {
+                real(values.map(Ideal::real)) as $real
+            }
+            #[inline(always)]
             fn halfway(a: $real, b: $real) -> $real {
                 (a + b) / 2.0
             }

@@ -109,6 +109,10 @@ impl Lane for i32 {
         fixed
     }
     #[inline(always)]
+    fn mixed(_values: [i32; 3], fixed: i32, _real: impl Fn([f64; 3]) -> f64) -> i32 {
+        fixed
+    }
+    #[inline(always)]
     fn halfway(a: i32, b: i32) -> Halves {
         Halves(a + b)
     }

@@ -226,7 +226,11 @@ impl Check<'_> {
                         // It is not known how texels of another size follow each other in a texture that is not a
                         // rectangle.
                         None if pixel != texel && texture.kind != TextureKind::Rectangle => None,
-                        None if of_depths || texture.format.is_compressed() || texture.format == TextureFormat::P8 => {
+                        None if of_depths
+                            || texture.format.is_compressed()
+                            || texture.format.is_paired()
+                            || texture.format == TextureFormat::P8 =>
+                        {
                             None
                         }
                         None => surface::texel_columns(shown.width, pixel, texel),
@@ -280,7 +284,14 @@ impl Check<'_> {
             self.refuse("NB0235", "TEX-1", message, format!("its faces and levels take {expected}"));
             return;
         }
-        let bits = 8 * format.bytes();
+        if format.is_paired()
+            && let Some(at) = words.as_chunks().0.iter().position(|[a, b]| (a ^ b) & 0xffff != 0)
+        {
+            let message =
+                format!("words {} and {} of texture `{name}` do not have the same chroma", 2 * at, 2 * at + 1);
+            self.refuse("NB0206", "TEX-1", message, "give both texels of a pair the same low 16 bits, Cb and Cr");
+        }
+        let bits = format.word_bits();
         if format.depth().is_none()
             && bits < 32
             && let Some(at) = words.iter().position(|word| word >> bits != 0)
@@ -347,6 +358,7 @@ impl Check<'_> {
 
     fn units(&mut self, draw: &Draw) {
         let profile = self.scene.profile;
+        self.only_nv2a("NB0344", "TEX-19", draw.convert_yuv, "a conversion from YUV");
         for (index, (unit, stage)) in draw.textures.iter().zip(&draw.texture_shader).enumerate() {
             let conventional = matches!(stage.operation, ShaderOperation::None | ShaderOperation::Sample);
             let idle = unit.is_none() && stage.operation == ShaderOperation::None;

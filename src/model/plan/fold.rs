@@ -77,7 +77,8 @@ pub(super) fn initially_zero(draw: &Draw, black: &[u8]) -> u64 {
                 ShaderOperation::DotProduct => true,
                 _ => unit.is_none() && channel < 3,
             };
-            if black {
+            // What is converted (TEX-19) is not examined.
+            if black && !(draw.convert_yuv && channel < 3) {
                 zero |= bit(register, channel);
             }
         }

@@ -51,6 +51,8 @@ pub(super) struct Liveness {
     pub(super) secondary: u8,
     pub(super) fog: u8,
     pub(super) units: [u8; TEXTURE_UNITS],
+    /// Whether the colour of each unit is converted (TEX-19).
+    pub(super) yuv: [bool; TEXTURE_UNITS],
     /// Whether the dot product of each unit is needed.
     pub(super) dots: [bool; TEXTURE_UNITS],
     pub(super) spare0_alpha: bool,
@@ -144,6 +146,10 @@ impl<'d> DrawValues<'d> {
         };
         let mut units = [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3].map(channels);
         let spare0_alpha = channels(Register::Spare0) & ALPHA != 0;
+        let yuv = units.map(|channels| draw.convert_yuv && channels & RGB != 0);
+        for (channels, _) in units.iter_mut().zip(yuv).filter(|(_, is_converted)| *is_converted) {
+            *channels |= RGB;
+        }
         let dots = shader_liveness(draw, &mut units);
         let live = (0..REGISTERS).fold(0, |live, n| live | u64::from(channels(Register::ALL[n])) << (4 * n));
         Liveness {
@@ -153,6 +159,7 @@ impl<'d> DrawValues<'d> {
             secondary: channels(Register::SecondaryColor),
             fog: channels(Register::Fog),
             units,
+            yuv,
             dots,
             spare0_alpha,
             undefined: live & initially_undefined(),

@@ -92,6 +92,8 @@ pub struct PlannedDraw {
     pub unbound: [u8; TEXTURE_UNITS],
     /// R, G, B, A of those units.
     pub unbound_color: [u8; 4],
+    /// Units whose registers are converted from YUV (TEX-19): those of which combiners read colours.
+    pub yuv: [bool; TEXTURE_UNITS],
     /// Whether SPARE0's initial alpha is read (CMB-13).
     pub spare0_alpha: bool,
     /// Registers that are read before anything writes them (CMB-13), as `bits`.
@@ -415,6 +417,7 @@ fn plan_draw(
         shader,
         unbound: std::array::from_fn(|n| if idle(n) { liveness.units[n] } else { 0 }),
         unbound_color: [0, 0, 0, 255],
+        yuv: liveness.yuv,
         spare0_alpha: liveness.spare0_alpha,
         undefined: liveness.undefined,
         stages: liveness.stages,

@@ -58,6 +58,7 @@ impl Default for Draw {
             fog: Fog::default(),
             textures: [None; TEXTURE_UNITS],
             texture_shader: std::array::from_fn(|unit| ShaderStage::conventional(unit, false)),
+            convert_yuv: false,
             combiners: Combiners::default(),
             program_origin: vec![],
             vertex_program: None,

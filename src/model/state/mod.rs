@@ -145,6 +145,8 @@ pub struct Draw {
     /// What each unit does: [`ShaderStage::conventional`] unless the draw has a texture shader (nv2a). A bound unit whose operation is
     /// [`ShaderOperation::None`] is not sampled.
     pub texture_shader: [ShaderStage; TEXTURE_UNITS],
+    /// Whether R, G and B of all texture registers become those of the Y, Cb and Cr that they hold (TEX-19, nv2a).
+    pub convert_yuv: bool,
     /// The combiner program, which computes each pixel.
     pub combiners: Combiners,
     /// The source text of each general stage. Empty if the program was written directly for the combiners.

@@ -37,7 +37,7 @@ pub fn channels<W: Word>(format: TextureFormat, word: W) -> [W; 4] {
     let four = |shift: u32| bits(shift, 15) << 4 | bits(shift, 15);
     match format {
         TextureFormat::A8R8G8B8 | TextureFormat::R16B16 => [byte(16), byte(8), byte(0), byte(24)],
-        TextureFormat::X8R8G8B8 => [byte(16), byte(8), byte(0), all],
+        TextureFormat::X8R8G8B8 | TextureFormat::Yuy2 | TextureFormat::Uyvy => [byte(16), byte(8), byte(0), all],
         TextureFormat::A8B8G8R8 => [byte(0), byte(8), byte(16), byte(24)],
         TextureFormat::B8G8R8A8 => [byte(8), byte(16), byte(24), byte(0)],
         TextureFormat::R8G8B8A8 => [byte(24), byte(16), byte(8), byte(0)],
@@ -76,7 +76,7 @@ pub(crate) fn expand_all<T>(format: TextureFormat, words: &[u32], of: impl Fn([u
         };
     }
     each!(A8R8G8B8 X8R8G8B8 A8B8G8R8 B8G8R8A8 R8G8B8A8 R5G6B5 R6G5B5 X1R5G5B5 A1R5G5B5 A4R4G4B4 L8 I8 A8 A8L8 G8B8 R8B8 R16B16 Y16
-        Z16 Z16F Z24S8 Z24S8F P8 Dxt1 Dxt3 Dxt5);
+        Yuy2 Uyvy Z16 Z16F Z24S8 Z24S8F P8 Dxt1 Dxt3 Dxt5);
 }
 
 /// Returns whether the format has channels of 5 or 6 bits, which widening does not convert exactly. 1 and 4 bits are
@@ -145,7 +145,9 @@ mod tests {
         let byte = |shift| Bits(shift, 8);
         Some(match format {
             TextureFormat::A8R8G8B8 | TextureFormat::R16B16 => [byte(16), byte(8), byte(0), byte(24)],
-            TextureFormat::X8R8G8B8 => [byte(16), byte(8), byte(0), Fixed(255)],
+            TextureFormat::X8R8G8B8 | TextureFormat::Yuy2 | TextureFormat::Uyvy => {
+                [byte(16), byte(8), byte(0), Fixed(255)]
+            }
             TextureFormat::A8B8G8R8 => [byte(0), byte(8), byte(16), byte(24)],
             TextureFormat::B8G8R8A8 => [byte(8), byte(16), byte(24), byte(0)],
             TextureFormat::R8G8B8A8 => [byte(24), byte(16), byte(8), byte(0)],
@@ -198,7 +200,7 @@ mod tests {
     /// Tests every texel of at most 16 bits in every format.
     #[test]
     fn every_small_texel() {
-        for format in TextureFormat::ALL.iter().filter(|format| format.bytes() <= 2) {
+        for format in TextureFormat::ALL.iter().filter(|format| format.bytes() <= 2 && !format.is_paired()) {
             for word in 0..1 << (8 * format.bytes()) {
                 check(*format, word);
             }
@@ -208,7 +210,7 @@ mod tests {
     /// Tests every value of each byte in the 32-bit formats, while the other bytes hold something else.
     #[test]
     fn every_byte_of_large_texels() {
-        for format in TextureFormat::ALL.iter().filter(|format| format.bytes() == 4) {
+        for format in TextureFormat::ALL.iter().filter(|format| format.bytes() == 4 || format.is_paired()) {
             for byte in 0..=255_u32 {
                 for shift in [0, 8, 16, 24] {
                     let others = 0x1234_5678 & !(255 << shift);

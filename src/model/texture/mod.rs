@@ -24,3 +24,4 @@ pub mod show;
 pub mod single;
 pub mod stage;
 pub mod unit;
+pub mod yuv;

@@ -51,6 +51,8 @@ named! {
         Tex17 = "TEX-17" => Part::Filtering,
         /// Signed texels after filtering.
         Tex18 = "TEX-18" => Part::Filtering,
+        /// Colours that are converted from YUV.
+        Tex19 = "TEX-19" => Part::Filtering,
         /// The unsigned input mappings.
         Cmb2 = "CMB-2" => Part::Expansion,
         /// The expand input mappings.

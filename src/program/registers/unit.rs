@@ -117,6 +117,8 @@ pub const FLOAT_DEPTH: Field = Field::new(12, 1);
 pub const W_BUFFER: Field = Field::new(16, 1);
 /// See [`STENCIL_WRITE`].
 pub const PERSPECTIVE: Field = Field::new(20, 1);
+/// Field of `control0`: how the colours of units are converted (TEX-19): 0 not at all, 1 from Y, Cb and Cr.
+pub const CONVERSION: Field = Field::new(28, 4);
 /// Field of `zmin_max_control`: whether depths outside of the range are clamped.
 pub const CLAMPS_DEPTH: Field = Field::new(4, 1);
 /// Field of `surface_format`: whether the depth buffer has 16 bits (1) or 24 and a stencil (2).
@@ -184,7 +186,7 @@ pub const FOG_MODES: [(FogMode, u32); FogMode::ALL.len()] = [
 ];
 
 /// The codes of texture formats: swizzled, or compressed, or with a pitch.
-pub const FORMATS: [(u32, TextureFormat, bool); 48] = [
+pub const FORMATS: [(u32, TextureFormat, bool); 50] = [
     (0x00, TextureFormat::L8, false),
     (0x01, TextureFormat::I8, false),
     (0x02, TextureFormat::A1R5G5B5, false),
@@ -211,6 +213,8 @@ pub const FORMATS: [(u32, TextureFormat, bool); 48] = [
     (0x1e, TextureFormat::X8R8G8B8, true),
     (0x1f, TextureFormat::A8, true),
     (0x20, TextureFormat::A8L8, true),
+    (0x24, TextureFormat::Yuy2, true),
+    (0x25, TextureFormat::Uyvy, true),
     (0x27, TextureFormat::R6G5B5, false),
     (0x28, TextureFormat::G8B8, false),
     (0x29, TextureFormat::R8B8, false),

@@ -48,6 +48,8 @@ pub fn error_range(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
         Rule::Tex6 => symmetric(0.5),
         // Three roundings of half a step, doubled, and s/128 for s/127.5.
         Rule::Tex18 => symmetric(4.0),
+        // A unit test of the conversion finds the extremes.
+        Rule::Tex19 => Some((-3.12, 4.66)),
         Rule::Cmb2 => symmetric(0.0),
         Rule::Cmb3 => match policies.expand_centre {
             ExpandCentre::Centred => symmetric(1.0),

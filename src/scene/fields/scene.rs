@@ -265,6 +265,8 @@ source! {
         fog: Fog<'a> [or "off, black"],
         /// list of [units](#texture-units), unit 0 first
         textures: List<'a, Unit> [or "none"],
+        /// Nv2a only: R, G and B of all units become those of the Y, Cb and Cr that they yield (TEX-19)
+        convert_yuv: bool = false,
         /// [pixel program](#pixel-programs)
         program: Program [or "the colours of the vertices, with fog"],
         /// keeps fragments by their [alpha](#alpha-test)

@@ -133,6 +133,7 @@ fn draw<'a>(
         // Nine bits.
         point_size: fields.point_size(reader) as u16,
         point_sprite: sprite(reader, fields),
+        convert_yuv: conversion(reader, fields),
         scissor: scissor(reader, target, fields),
         fog: fog.state,
         textures: units.bound,
@@ -200,6 +201,13 @@ fn lines<'a>(reader: &mut Reader<'a>, fields: &source::Draw<'a>) -> Lines {
 fn sprite<'a>(reader: &mut Reader<'a>, fields: &source::Draw<'a>) -> bool {
     let wanted = fields.point_sprite(reader);
     reader.needs_nv2a(&fields.point_sprite, wanted, "NB0325", ("a point sprite", "PNT-2"));
+    wanted && reader.profile == Profile::Nv2a
+}
+
+/// Reads whether colours are converted from YUV.
+fn conversion<'a>(reader: &mut Reader<'a>, fields: &source::Draw<'a>) -> bool {
+    let wanted = fields.convert_yuv(reader);
+    reader.needs_nv2a(&fields.convert_yuv, wanted, "NB0344", ("a conversion from YUV", "TEX-19"));
     wanted && reader.profile == Profile::Nv2a
 }
 

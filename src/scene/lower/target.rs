@@ -159,7 +159,11 @@ fn words(target: &Target, buffer: Buffer, texture: &Texture) -> Result<Arc<[u32]
     let (name, depth) = (texture.format.name(), texture.format.depth());
     match (buffer, target.depth) {
         (Buffer::Color, _) => {
-            if texture.format.is_compressed() || depth.is_some() || texture.format.bytes() != format.bytes() {
+            if texture.format.is_compressed()
+                || texture.format.is_paired()
+                || depth.is_some()
+                || texture.format.bytes() != format.bytes()
+            {
                 return refused(format!("is of format {name}, whose texels are no pixels of {}", format.name()));
             }
         }

@@ -116,11 +116,6 @@ fn texture<'a>(reader: &mut Reader<'a>, entry: &Entry<'a, source::Texture<'a>>) 
 }
 
 fn format<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, crate::reader::Name<TextureFormat>>) -> Option<TextureFormat> {
-    if let (name @ ("YUY2" | "UYVY"), "") = raw.split() {
-        let message = format!("how {name} texels are rounded is not known");
-        let help = "convert the picture to A8R8G8B8";
-        return reader.refuse(finding("NB0402", reader.span(raw), message, "not modelled", help).rule("TEX-1"));
-    }
     if let (name, "") = raw.split()
         && let Some((own, _)) =
             DEPTH_FORMATS.iter().find(|(_, names)| names.iter().any(|known| known.eq_ignore_ascii_case(name)))
@@ -215,6 +210,11 @@ fn of_target<'a>(
     let (format, format_place) = match format {
         Some((TextureFormat::P8, place)) => {
             let message = "a render target does not hold indices of a palette";
+            let help = format!("leave `format` out, which means {own:?} here");
+            return reader.refuse(finding("NB0232", place, message, "does not go with `Target`", help));
+        }
+        Some((format, place)) if format.is_paired() => {
+            let message = format!("a render target is not read as {}", format.name());
             let help = format!("leave `format` out, which means {own:?} here");
             return reader.refuse(finding("NB0232", place, message, "does not go with `Target`", help));
         }

@@ -202,7 +202,7 @@ fn words<'a>(reader: &mut Reader<'a>, text: &'a str, request: &Request) -> Optio
     afford(reader, place.clone(), u64::from(width) * u64::from(height))?;
     let list = fields.rows(reader)?;
     let rows = reader.read(&list)?;
-    let digits = 2 * format.bytes() as usize;
+    let digits = format.word_bits() as usize / 4;
     let help = format!("write {width} words of {digits} hexadecimal digits in each of {height} rows, for {format:?}");
     if rows.len() != height as usize {
         let message = format!("{} rows of texels for a height of {height}", rows.len());

@@ -83,6 +83,7 @@ pub(super) fn state(
         fields.put("fog", fog(&draw.fog, scene.profile)?);
     }
     unit::units(fields, draw, scene, tables)?;
+    fields.flag("convert_yuv", draw.convert_yuv, false);
     if let Some(program) = parts.program {
         fields.put("program", program);
     }

@@ -214,7 +214,7 @@ fn faces(picture: impl Fn(usize) -> Node) -> Node {
 /// Returns the rows of a level, whose words come first, as hexadecimal words.
 fn rows(words: &[u32], format: TextureFormat, level: &Level, beyond: u32) -> Node {
     let [width, height] = [level.width + beyond, level.height + beyond];
-    let digits = 2 * format.bytes() as usize;
+    let digits = format.word_bits() as usize / 4;
     let row = |row: &[u32]| {
         let words: Vec<String> =
             row.iter().map(|word| format!("{:0digits$x}", texels::in_memory(*word, format))).collect();

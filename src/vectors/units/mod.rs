@@ -173,6 +173,7 @@ pub fn all() -> Vec<&'static dyn Unit> {
         &sampling::VolumeLayer,
         &texel::TexelExpansion,
         &texel::CompressedBlock,
+        &texel::YuvConversion,
         &sampling::ColorKey,
         &sampling::ShadowComparison,
         &reading::FilteredKey,

@@ -14,7 +14,7 @@ use ninebit::texture::stage::{PlannedShader, PlannedShaderStage, ShaderSetup};
 use ninebit::texture::{dot, shader};
 use ninebit::trace::{Observer, Recorder, Silent};
 
-const NV2A: &[Profile] = &[Profile::Nv2a];
+pub(super) const NV2A: &[Profile] = &[Profile::Nv2a];
 
 /// A colour as a vector of the dot unit.
 pub(super) struct Remap;

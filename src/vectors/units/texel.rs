@@ -1,8 +1,9 @@
 //! Texels: words and blocks as bytes.
 
+use super::shader::NV2A;
 use super::{Column, Conditions, Kind, Reach, Unit, color_results, named, put};
 use ninebit::state::{Named, Profile, TextureFormat};
-use ninebit::texture::{compressed, format};
+use ninebit::texture::{compressed, format, yuv};
 
 /// Returns a column of the formats for which `wanted` is true.
 pub(super) fn formats(wanted: fn(TextureFormat) -> bool) -> Column {
@@ -28,15 +29,32 @@ impl Unit for TexelExpansion {
     );
 
     fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
-        inputs[1] >> (8 * named::<TextureFormat>(inputs[0]).bytes()) == 0
+        inputs[1] >> named::<TextureFormat>(inputs[0]).word_bits() == 0
     }
 
     fn fit(&self, inputs: &mut [i64]) {
-        inputs[1] &= (1 << (8 * named::<TextureFormat>(inputs[0]).bytes())) - 1;
+        inputs[1] &= (1 << named::<TextureFormat>(inputs[0]).word_bits()) - 1;
     }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         put(results, format::expand(named(inputs[0]), inputs[1] as u32));
+    }
+}
+
+/// The conversion of a register from YUV.
+pub(super) struct YuvConversion;
+
+impl Unit for YuvConversion {
+    known_as!(
+        "yuv-conversion", &["TEX-19"], "Y, Cb and Cr, which a register holds as R, G, B, as a colour", Direct; on NV2A;
+        takes [["in.y", "in.cb", "in.cr"].map(Column::byte)];
+        gives [["out.r", "out.g", "out.b"].map(|name| Column::result(name, Kind::Unsigned(8)))]
+    );
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        for (channel, result) in results.iter_mut().enumerate() {
+            *result = yuv::converted(channel, [inputs[0], inputs[1], inputs[2]]);
+        }
     }
 }
 

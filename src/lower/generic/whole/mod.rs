@@ -54,7 +54,7 @@ const STAGES: [(&str, u32, ShaderOperation); 15] = {
 };
 
 /// The fields of words, with their names in the text.
-const FIELDS: [(&str, Bits); 29] = [
+const FIELDS: [(&str, Bits); 30] = [
     ("ENABLE", words::ENABLE),
     ("CUBE", words::CUBE),
     ("BORDER_COLOR", words::BORDER_COLOR),
@@ -82,6 +82,7 @@ const FIELDS: [(&str, Bits); 29] = [
     ("FLOAT_DEPTH", words::FLOAT_DEPTH),
     ("W_BUFFER", words::W_BUFFER),
     ("PERSPECTIVE", words::PERSPECTIVE),
+    ("CONVERSION", words::CONVERSION),
     ("CLAMPS_DEPTH", words::CLAMPS_DEPTH),
     ("SURFACE_DEPTH", words::SURFACE_DEPTH),
 ];

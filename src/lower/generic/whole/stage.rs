@@ -4,6 +4,7 @@ use ninebit::state::*;
 use ninebit::texture::dot;
 use ninebit::texture::shader::finite_vector;
 use ninebit::texture::stage::{PlannedShader, PlannedShaderStage};
+use ninebit::texture::yuv;
 use ninebit_program::registers::unit::DOT_MAPPINGS;
 
 use super::reader::{OWN, planned};
@@ -109,7 +110,13 @@ pub(super) fn pieces(maker: &Maker) -> Vec<Piece> {
         let line = reader.patterns(["scale", "offset"]).map(|pattern| reader.number_of(pattern).operand(reader.code));
         vec![lit(reader.code, reader.local("channel", REGISTER), reader.local("red", (0, 255)), line)]
     });
+    let converted = maker.case(0, "", |reader| {
+        reader.code.by("TEX-19");
+        let held = reader.all(["held[0]", "held[1]", "held[2]"], REGISTER);
+        [0, 1, 2].map(|channel| yuv::converted(channel, held)).to_vec()
+    });
     vec![
+        piece("nb_converted", "A colour of Y, Cb and Cr.", "@in @int held[3]", vec![converted]).filling("converted[3]"),
         piece("nb_passed", "Coordinates as a colour.", OWN, vec![passed]).filling("loaded[4]"),
         piece(
             "nb_drops",

@@ -97,6 +97,9 @@ pub fn scene(name: &str, scene: &Scene, assemblies: &[&Assembly]) -> Result<Scen
         if draw.fog.enabled {
             fog_function(&mut lines, draw, &corners)?;
         }
+        if draw.convert_yuv {
+            return Err("a conversion from YUV".into());
+        }
         let [r, g, b] = draw.fog.color;
         lines.add(format!("fog_color {r} {g} {b}"));
         let depths = corners.iter().map(|corner| depth(draw, corner)).collect::<Vec<f64>>();

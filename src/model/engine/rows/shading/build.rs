@@ -88,6 +88,11 @@ fn inputs(draw: &PlannedDraw, samplers: Option<&[Sampler]>, graph: &mut Graph) -
             _ => registers[register as usize],
         };
     }
+    for register in (0..UNITS.len()).filter(|n| draw.yuv[*n]).map(|n| UNITS[n] as usize) {
+        let [y, cb, cr, alpha] = registers[register];
+        let [r, g, b] = graph.converted([y, cb, cr]);
+        registers[register] = [r, g, b, alpha];
+    }
     if draw.spare0_alpha {
         registers[Register::Spare0 as usize][3] = registers[Register::Texture0 as usize][3];
     }

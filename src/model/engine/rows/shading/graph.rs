@@ -187,6 +187,15 @@ impl Graph {
         self.add(Node::Sum(Pairs::new(&left)), (kernels::rounded(low), kernels::rounded(high)))
     }
 
+    /// Adds the conversion of Y, Cb and Cr (TEX-19).
+    pub(crate) fn converted(&mut self, color: [Value; 3]) -> [Value; 3] {
+        let known = color.map(|value| self.known_constant(value));
+        [0, 1, 2].map(|channel| match known {
+            [Some(y), Some(cb), Some(cr)] => self.constant(kernels::converted(channel, [y, cb, cr])),
+            _ => self.add(Node::Converted(channel, color), (0, 255)),
+        })
+    }
+
     fn are_bytes(&self, values: &[Value]) -> bool {
         values.iter().all(|v| self.range(*v).0 >= 0 && self.range(*v).1 <= 255)
     }

@@ -10,6 +10,7 @@ use crate::number::{Factor, Lane, Narrow, Quarters, Sum};
 use crate::state::{
     Bias, ExpandCentre, HalfBiasConstant, InputMapping, MuxNegative, MuxSelect, Policies, RegisterFloor, Scale,
 };
+use crate::texture::yuv;
 
 /// Maps one register. With CMB-4=127.5 the result is in halves.
 #[inline(always)]
@@ -79,6 +80,12 @@ fn unsigned_dot(a: [i16; 3], b: [i16; 3]) -> i16 {
     let a = [expand_normal(Narrow(a[0])), expand_normal(Narrow(a[1])), expand_normal(Narrow(a[2]))];
     let b = [expand_normal(Narrow(b[0])), expand_normal(Narrow(b[1])), expand_normal(Narrow(b[2]))];
     unsigned_identity(dot_product(a, b).rounded()).0
+}
+
+/// TEX-19: returns a channel of a colour.
+#[inline(always)]
+pub(crate) fn converted(channel: usize, [y, cb, cr]: [i16; 3]) -> i16 {
+    yuv::converted(channel, [i32::from(y), i32::from(cb), i32::from(cr)]) as i16
 }
 
 /// Runs a loop over lanes. `out` is a parameter of its own, so that the compiler knows that it does not overlap the operands.
@@ -247,6 +254,15 @@ pub(crate) fn run(node: &Node, at: usize, lanes: Lanes, rows: &mut [PerLane<i16>
         Node::Signed(v) => {
             let v = row(v);
             each(out, lanes, |n| i32::from(v[n]).signed_byte() as i16);
+        }
+        Node::Converted(channel, v) => {
+            let [y, cb, cr] = [row(v[0]), row(v[1]), row(v[2])];
+            // A loop for each channel.
+            match channel {
+                0 => each(out, lanes, |n| converted(0, [y[n], cb[n], cr[n]])),
+                1 => each(out, lanes, |n| converted(1, [y[n], cb[n], cr[n]])),
+                _ => each(out, lanes, |n| converted(2, [y[n], cb[n], cr[n]])),
+            }
         }
     }
 }

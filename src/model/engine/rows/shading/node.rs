@@ -123,6 +123,8 @@ pub(crate) enum Node {
     Truncate(u32, Value),
     /// A byte as two's complement (ROP-3).
     Signed(Value),
+    /// TEX-19: channel 0, 1 or 2 of a colour, of Y, Cb and Cr.
+    Converted(usize, [Value; 3]),
 }
 
 impl Node {
@@ -142,7 +144,7 @@ impl Node {
             Node::Bytes(v) | Node::Add(v) | Node::Minus(v) | Node::Least(v) | Node::Greatest(v) => v,
             Node::ByteSum(v) | Node::Difference(v) => v,
             Node::UnsignedDot(v) => v,
-            Node::Select(_, v) => v,
+            Node::Select(_, v) | Node::Converted(_, v) => v,
         }
     }
 
