@@ -73,7 +73,8 @@ fn of_masks(bits: u32, masks: [u32; 4]) -> Option<TextureFormat> {
     let full = |n: usize| std::array::from_fn(|channel| if channel == n { 255 } else { 0 });
     let stores = |format: TextureFormat| [0, 1, 2, 3].map(|n| word(full(n), format));
     let has_colors = !masks[..3].contains(&0);
-    let mut packable = TextureFormat::ALL.iter().copied().filter(|format| has_colors && can_pack(*format));
+    let is_packable = |format: &TextureFormat| has_colors && can_pack(*format) && !format.is_paired();
+    let mut packable = TextureFormat::ALL.iter().copied().filter(is_packable);
     packable.find(|format| 8 * format.bytes() == bits && stores(*format) == masks)
 }
 
