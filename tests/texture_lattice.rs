@@ -43,6 +43,7 @@ impl Image {
             (nv2a || !f.is_nv2a_only())
                 && (kind != TextureKind::Rectangle || f.is_linear(profile))
                 && (flat || f.depth().is_none())
+                && (kind == TextureKind::Rectangle || !f.is_paired())
         };
         let formats: Vec<TextureFormat> = TextureFormat::ALL.iter().copied().filter(legal).collect();
         let format = pick(next, &formats);
@@ -51,7 +52,7 @@ impl Image {
         match kind {
             TextureKind::Rectangle => {
                 sides = [2 * (1 + next() % 20), 1 + next() % 40];
-                sides[0] -= u32::from(nv2a) * (next() % 2);
+                sides[0] -= u32::from(nv2a && !format.is_paired()) * (next() % 2);
             }
             TextureKind::Cube => sides[1] = sides[0],
             // The longest sides.
@@ -75,6 +76,11 @@ impl Image {
         let faces = if kind == TextureKind::Cube { CUBE_FACES } else { layers } as usize;
         let bits = format.word_bits();
         image.words = (0..faces * image.face_words()).map(|_| word(next) >> (32 - bits)).collect();
+        if format.is_paired() {
+            for [first, second] in image.words.as_chunks_mut().0 {
+                *second = *second & !0xffff | *first & 0xffff;
+            }
+        }
         if format == TextureFormat::P8 {
             let entries = if nv2a { 32 << (next() % 4) } else { 256 };
             image.palette = (0..entries).map(|_| word(next)).collect();
