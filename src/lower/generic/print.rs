@@ -14,7 +14,7 @@ fn remark(rules: &str) -> String {
 }
 
 /// Length of lines that are filled with several statements.
-pub(super) const FILLED: usize = 120;
+pub(super) const FILLED: usize = 132;
 
 /// Joins statements as long as they fit into a line.
 fn filled(statements: Vec<String>) -> Vec<String> {
