@@ -172,7 +172,7 @@ impl Helper {
                 (name, "a b + c + d e, each term to the 24th bit of the largest", "WGT-1")
             }
             Helper::Depth => ("depth", "a b + c d + e f, each term to the 29th bit of the largest", "DEP-1"),
-            Helper::Floor => ("floored", "floor(size a 2^power), up to a limit", "INT-2, INT-4"),
+            Helper::Floor => ("floored", "floor(size a 2^power), up to a limit", "INT-4"),
             Helper::FarFloor => ("far_floored", "floor(size a 2^power), up to a limit", "TEX-11"),
             Helper::Ratio => ("ratio", "floor(size a / b 2^8), up to a limit", "TEX-15"),
             Helper::FarRatio => ("far_ratio", "floor(size a / b 2^16), up to a limit", "TEX-11, TEX-15"),

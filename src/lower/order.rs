@@ -4,12 +4,13 @@
 use ninebit::algebra::{Algebra, Site};
 use ninebit::combiner::registers::channel_name;
 use ninebit::combiner::{mapping, output};
-use ninebit::number::{Factor as _, Register as _, Sum as _};
+use ninebit::number::{Factor as _, Integer as _, Register as _, Sum as _};
 use ninebit::state::*;
 use ninebit::trace::Rule;
 
-use crate::code::{Code, Test};
+use crate::code::Code;
 use crate::number::{Factor, Number, Sum, widened};
+use crate::truth::Truth;
 
 /// The part of the order that is being read. The places in the text have another meaning in each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -125,7 +126,7 @@ impl<'a> Algebra for Listing<'a> {
     type Register = Number<'a>;
     type Factor = Factor<'a>;
     type Sum = Sum<'a>;
-    type Choice = Test;
+    type Choice = Truth<'a>;
 
     fn policies(&self) -> &Policies {
         &self.policies
@@ -172,21 +173,14 @@ impl<'a> Algebra for Listing<'a> {
         self.by(rule);
         widened(x)
     }
-    fn choice(&mut self, select: MuxSelect, spare0_alpha: Number<'a>) -> Test {
+    fn choice(&mut self, select: MuxSelect, spare0_alpha: Number<'a>) -> Truth<'a> {
         self.code.by("CMB-10");
-        let bit = match (select, self.policies.mux_negative) {
-            (MuxSelect::Msb, MuxNegative::Sign) => {
-                return spare0_alpha.compared(CompareFunction::GreaterOrEqual, Number::Constant(128));
-            }
-            (MuxSelect::Msb, MuxNegative::Bit7) => 128,
-            (MuxSelect::Lsb, _) => 1,
-        };
-        spare0_alpha.low_bits(bit).compared(CompareFunction::NotEqual, Number::Constant(0))
+        output::takes_cd(spare0_alpha, select, self.policies.mux_negative)
     }
-    fn select(&mut self, takes_cd: Test, cd: Sum<'a>, ab: Sum<'a>) -> Sum<'a> {
+    fn select(&mut self, takes_cd: Truth<'a>, cd: Sum<'a>, ab: Sum<'a>) -> Sum<'a> {
         self.code.by("CMB-10");
         let [cd, ab] = cd.alike(ab);
-        Sum { value: cd.value.selected(takes_cd, self.code, ab.value), halvings: cd.halvings }
+        Sum { value: cd.value.or(takes_cd, ab.value), halvings: cd.halvings }
     }
     fn rounded(&mut self, sum: Sum<'a>) -> Number<'a> {
         self.code.by("NUM-2");

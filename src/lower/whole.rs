@@ -13,9 +13,9 @@ use ninebit::raster::{depth, interpolate};
 use ninebit::rop::stencil;
 use ninebit::state::*;
 
-use crate::binary::{Interpolant, counted};
-use crate::code::{Code, Operand};
-use crate::helper::{Helper, Sign};
+use crate::binary::Interpolant;
+use crate::code::Code;
+use crate::helper::Sign;
 use crate::input::Input;
 use crate::number::{Number, Word};
 use crate::triangle::{ANY_UNIT, Field, Part};
@@ -110,9 +110,9 @@ impl<'a> Interpolator<'a> {
     /// INT-2: returns W0 and W2.
     pub(crate) fn color_weights(&self, sample: &Sample<'a>) -> [Number<'a>; 2] {
         [(0, "W0"), (1, "W2")].map(|(k, name): (usize, &str)| {
-            let limit = [1, 8, 256].map(Operand::Constant);
-            let b = sample.b[k].operand(self.code);
-            let weight = counted(self.code, Helper::Floor, &[b, limit[0], limit[1], limit[2]]).within(0, 256);
+            let b = sample.b[k].parts(self.code, (0, 1 << 24));
+            self.code.by("INT-2");
+            let weight = interpolate::color_weight(b).within(0, 256);
             self.code.name(weight.operand(), || name.to_string());
             weight
         })

@@ -4,12 +4,12 @@
 use ninebit::algebra::{Algebra, Site};
 use ninebit::combiner::registers::Registers;
 use ninebit::combiner::{final_combiner, general};
-use ninebit::number::Register as _;
+use ninebit::number::{Integer, Register as _};
 use ninebit::rop::{blend, surface};
 use ninebit::state::*;
 use ninebit_program::registers::{OPERATIONS, raster};
 
-use crate::code::{Code, Kind, Line, Operand, Operation, Range, Test, enclosing};
+use crate::code::{Code, Kind, Line, Operand, Operation, Range, enclosing};
 use crate::input::{Input, Local};
 use crate::kind::is_wide;
 use crate::number::{Factor, Number, Sum, Word};
@@ -133,14 +133,6 @@ impl<'a> Reader<'a> {
     fn sum(&self, sum: Sum<'a>) -> Number<'a> {
         sum.alike(Sum { value: Number::Constant(0), halvings: self.halvings })[0].value
     }
-
-    /// Returns 1 if the test holds, otherwise 0.
-    pub(super) fn holds(&self, test: Test) -> Number<'a> {
-        match self.code.decided(test) {
-            Some(holds) => Number::Constant(holds.into()),
-            None => Number::Constant(1).selected(test, self.code, Number::Constant(0)),
-        }
-    }
 }
 
 /// Makes pieces for the given policies.
@@ -234,13 +226,12 @@ fn combiners(maker: &Maker) -> Vec<Piece> {
         |select: MuxSelect| (select == MuxSelect::Msb).into(),
         |reader, select| {
             let alpha = reader.local("spare0_alpha", REGISTER);
-            let test = reader.listing.choice(select, alpha);
-            vec![reader.holds(test)]
+            vec![reader.listing.choice(select, alpha).number()]
         },
     );
     let third = maker.flagged(["the sum", "the mux"], |reader, mux| {
         let [ab, cd] = reader.all(["ab", "cd"], full).map(|value| Sum { value, halvings: reader.halvings });
-        let takes_cd = reader.local("takes_cd", (0, 1)).compared(CompareFunction::NotEqual, Number::ZERO);
+        let takes_cd = !reader.local("takes_cd", (0, 1)).is_zero();
         let third = general::third(mux, takes_cd, ab, cd, &mut reader.listing);
         vec![reader.sum(third)]
     });
@@ -310,7 +301,7 @@ fn raster(maker: &Maker) -> Vec<Piece> {
     let passes = maker.cases(raster::compare_function, |reader, function: CompareFunction| {
         reader.code.by("ROP-1");
         let [alpha, reference] = reader.all(["alpha", "reference"], BYTE);
-        vec![reader.holds(alpha.compared(function, reference))]
+        vec![Integer::compared(alpha, function, reference).number()]
     });
     let factors = maker.cases(raster::blend_factor, |reader, factor: BlendFactor| {
         let [source, destination, constant] = [SOURCE, DESTINATION, CONSTANT].map(|names| reader.all(names, BYTE));

@@ -173,7 +173,8 @@ impl Syntax for C99 {
             Wide::Select => Text::Open(format!("{} ? {} : {}", terms[0], terms[1], terms[2])),
             Wide::Length => Text::Term(format!("ninebit_bits({})", terms[0])),
             Wide::Raise => Text::Term(format!("ninebit_raise({})", terms.join(", "))),
-            Wide::Lower if is_wide || terms[1].parse::<u8>().is_ok_and(|by| by < 32) => infix(&terms, ">>"),
+            Wide::ShortLower => infix(&terms, ">>"),
+            Wide::Lower if is_wide => infix(&terms, ">>"),
             Wide::Lower => Text::Open(format!("(int64_t){} >> {}", terms[0], terms[1])),
         }
     }

@@ -385,7 +385,10 @@ impl<'f> Body<'f> {
             Operation::Mask(a, by) => infix(term(a), "&", term(by)),
             Operation::Divide(a, by) => infix(term(a), "/", term(by)),
             Operation::Length(_) | Operation::Raise(..) | Operation::Lower(..) => {
-                let (wide, operands) = wide_operation(operation).unwrap_or((Wide::Length, Vec::new()));
+                let (mut wide, operands) = wide_operation(operation).unwrap_or((Wide::Length, Vec::new()));
+                if wide == Wide::Lower && self.range(operands[1]).1 < 32 {
+                    wide = Wide::ShortLower;
+                }
                 let operands: Vec<_> = operands.into_iter().map(|operand| (term(operand), false)).collect();
                 syntax.wide(wide, &operands, false)
             }

@@ -246,6 +246,7 @@ pub(super) fn wide(operation: Wide, operands: &[(String, bool)], result: bool, i
         return match operation {
             Wide::Length => Text::Term(format!("ninebit_length({})", plain[0])),
             Wide::Raise => Text::Open(format!("{} << {}", plain[0], distance(plain[1]))),
+            Wide::ShortLower => Text::Open(format!("{} >> {}", plain[0], distance(plain[1]))),
             _ => Text::Open(format!("{} >> {}", plain[0], distance(&format!("min({}, 31)", plain[1])))),
         };
     }

@@ -15,6 +15,8 @@ pub(crate) enum Wide {
     Length,
     Raise,
     Lower,
+    /// A shift of a number of 32 bits by at most 31.
+    ShortLower,
     Divide,
     /// A quotient that fits into 32 bits, by a divisor below [`DIVISOR`].
     Quotient,

@@ -1,6 +1,6 @@
 //! CMB-9, CMB-10: bias, scale and saturation of outputs, and the selection of the mux.
 
-use crate::number::{Lane, Register, Sum};
+use crate::number::{Integer, Lane, Register, Sum};
 use crate::state::{Bias, MuxNegative, MuxSelect, Policies, RegisterFloor, Scale};
 
 /// CMB-9: applies the bias.
@@ -52,10 +52,30 @@ pub fn mux_takes_cd<L: Lane>(spare0_alpha: L, select: MuxSelect, policies: &Poli
 
 /// CMB-10: returns whether the mux takes CD, for SPARE0's alpha as an integer.
 #[inline(always)]
-pub(crate) fn takes_cd(v: i32, select: MuxSelect, negative: MuxNegative) -> bool {
+pub fn takes_cd<I: Integer>(v: I, select: MuxSelect, negative: MuxNegative) -> I::Choice {
     match (select, negative) {
-        (MuxSelect::Lsb, _) => v & 1 != 0,
-        (MuxSelect::Msb, MuxNegative::Sign) => v >= 128,
-        (MuxSelect::Msb, MuxNegative::Bit7) => v & 128 != 0,
+        (MuxSelect::Lsb, _) => !v.masked(1).is_zero(),
+        (MuxSelect::Msb, MuxNegative::Sign) => !v.is_below(I::new(128)),
+        (MuxSelect::Msb, MuxNegative::Bit7) => !v.masked(128).is_zero(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn muxes_decide_by_one_bit_of_every_register() {
+        for v in -256..=255 {
+            let sides = [
+                (MuxSelect::Lsb, MuxNegative::Sign, v.rem_euclid(2) == 1),
+                (MuxSelect::Lsb, MuxNegative::Bit7, v.rem_euclid(2) == 1),
+                (MuxSelect::Msb, MuxNegative::Sign, (128..256).contains(&v)),
+                (MuxSelect::Msb, MuxNegative::Bit7, v.rem_euclid(256) >= 128),
+            ];
+            for (select, negative, expected) in sides {
+                assert_eq!(takes_cd(v, select, negative), expected, "CMB-10: {select:?} {negative:?} of {v}");
+            }
+        }
     }
 }

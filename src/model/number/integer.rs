@@ -24,7 +24,7 @@ pub trait Integer: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output =
     fn up(self, by: Self) -> Self;
     /// Returns the floor of the number over 2^`by`, for 0 to 63.
     fn down(self, by: Self) -> Self;
-    /// Returns the bits of a number that is not negative which `mask` has.
+    /// Returns the bits of the number in two's complement that `mask` has.
     fn masked(self, mask: i64) -> Self;
     /// Returns the remainder of a division by a positive number, which is not negative. A number that is not constant must be a power of two.
     fn modulo(self, by: Self) -> Self;

@@ -60,10 +60,10 @@ impl<'a> Sample<'a> {
     }
 }
 
-/// INT-2: returns a weight of colours, 0..=256.
+/// INT-2: returns the floor of 256 b, 0..=256, of a weight b of a covered sample, which is at most 1: its exponent is at most -23.
 #[inline(always)]
 pub fn color_weight<I: Integer>(b: Binary<I>) -> I {
-    b.floored(I::new(1), I::new(8), I::new(256))
+    b.mantissa.down((I::new(-8) - b.exponent).least(I::new(31)))
 }
 
 /// INT-4: returns a coordinate of an image of `size` texels in 1/256 texel.

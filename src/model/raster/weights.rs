@@ -302,8 +302,9 @@ impl<I: Integer> Number for Binary<I> {
     #[inline(always)]
     fn product<const BITS: u32>(self, other: Binary<I>) -> Binary<I> {
         let term = Term::product::<BITS>([self, other]);
-        let unit = term.exponent + (term.length - I::new(24));
-        Binary { mantissa: term.steps(unit, (1 << 24) - 1), exponent: unit }
+        let down = term.length - I::new(24);
+        let mantissa = term.magnitude.down(down).within(0, (1 << 24) - 1).negated(term.is_negative);
+        Binary { mantissa, exponent: term.exponent + down }
     }
 
     #[inline(always)]

@@ -167,13 +167,13 @@ fn tests(maker: &Maker) -> Vec<Piece> {
     });
     let compared = maker.cases(raster::compare_function, |reader, function: CompareFunction| {
         let [a, b] = reader.all(["a", "b"], DEPTH);
-        vec![reader.holds(a.compared(function, b))]
+        vec![Integer::compared(a, function, b).number()]
     });
     let shadow = SHADOW_FUNCTIONS.iter().map(|(function, code)| {
         maker.case(*code, function.name(), |reader| {
             reader.code.by("SHD-1");
             let [a, b] = reader.all(["a", "b"], DEPTH);
-            vec![reader.holds(a.compared(*function, b))]
+            vec![Integer::compared(a, *function, b).number()]
         })
     });
     let outcome = "@int kept, @int stencil_passed, @int depth_passed, @in @int stencils[3], @int held_stencil, @int depth, @int held_depth";
