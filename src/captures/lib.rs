@@ -175,6 +175,7 @@ type Suite = (&'static str, fn(&mut Frames));
 const SUITES: &[Suite] = &[
     ("3D_primitive", primitives::solids),
     ("Alpha_func", blend::alpha_function),
+    ("Antialiasing_tests", transfers::one_sample),
     ("Attrib_carryover", attributes::carryover),
     ("Attrib_float", primitives::float_colors),
     ("Attrib_setter", attributes::setters),

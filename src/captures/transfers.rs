@@ -56,6 +56,42 @@ pub(super) fn updates(frames: &mut Frames) {
     });
 }
 
+/// Returns a square on its corner with texels at its corners.
+fn diamond(color: VertexColor, texels: [f32; 4]) -> Draw {
+    let positions = [[64.0, 240.0], [320.0, 64.0], [576.0, 240.0], [320.0, 416.0]];
+    let mut draw = without_alpha(quads(&positions, color, FinalRegister::PrimaryColor), FinalRegister::PrimaryColor);
+    draw.vertices.update(|n, vertex| vertex.texture_coordinates = coordinates(corners(texels)[n]));
+    draw
+}
+
+/// Adds the frames of Antialiasing_tests that one sample a pixel decides: pictures that the processor wrote into a surface of any number of samples, and
+/// a surface of one.
+pub(super) fn one_sample(frames: &mut Frames) {
+    const SIDE: u32 = 128;
+    let mut show = |name: &str, [first, second]: [u32; 2], border: u32| {
+        frames.paint(name, 0xff05_0505, move |canvas| {
+            let fields = checker([argb(first), argb(second)], 8);
+            let inner = border..SIDE - border;
+            let picture = |x: u32, y: u32| {
+                let is_inside = inner.contains(&x) && inner.contains(&y);
+                if is_inside { fields(x - border, y - border) } else { [0xcc; 4] }
+            };
+            let image = images::texture(TextureFormat::A8R8G8B8, [SIDE; 2], picture);
+            let texture = canvas.texture(&images::in_texels(image));
+            let shown = fetching(diamond(VertexColor::Bytes([255; 4]), [0.0, 0.0, 128.0, 128.0]), 0, nearest(texture));
+            canvas.draw(without_alpha(shown, FinalRegister::Texture0));
+        });
+    };
+    for samples in ["Center1", "CenterCorner2", "SquareOffset4"] {
+        show(&format!("CreateSurfaceWith{samples}"), [0xff80_8080, 0xff33_33c0], 2);
+    }
+    show("CPUWriteIgnoresSurfaceConfig", [0xffcc_3333, 0xff33_33c0], 0);
+    show("NonAACPURoundTrip", [0xff33_6666, 0xff33_ff33], 0);
+    frames.paint("FBSurfaceWithCenter1", 0xff05_0505, |canvas| {
+        canvas.draw(diamond(VertexColor::Floats([0.25, 0.95, 0.75, 1.0]), [0.0; 4]));
+    });
+}
+
 /// Adds the frame of Texture_render_update_in_place: white, without blue, without red.
 pub(super) fn in_place(frames: &mut Frames) {
     frames.paint("RenderToInputTexture", 0xfe25_2525, |canvas| {
