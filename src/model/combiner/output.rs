@@ -66,7 +66,7 @@ mod tests {
 
     #[test]
     fn muxes_decide_by_one_bit_of_every_register() {
-        for v in -256..=255 {
+        for v in -256..=255_i32 {
             let sides = [
                 (MuxSelect::Lsb, MuxNegative::Sign, v.rem_euclid(2) == 1),
                 (MuxSelect::Lsb, MuxNegative::Bit7, v.rem_euclid(2) == 1),
