@@ -282,7 +282,7 @@ fn tables() {
     let lines: Vec<&str> = table.lines().skip(1).collect();
     assert_eq!(lines[0], "2\t-4\t1\tNegativeY\t12288\t6144\t48\t24\t[47,48]\t[23,24]");
     assert_eq!(lines[1], "0\t0\t0\tPositiveX\t0\t0\t0\t0\t[0,0]\t[0,0]");
-    assert!(lines[2].starts_with("-3\t3\t3\tNegativeX\t16384\t0\t63\t0"), "{table}");
+    assert!(lines[2].starts_with("-3\t3\t3\tNegativeX\t16383\t0\t63\t0"), "{table}");
 }
 
 #[test]

@@ -9,7 +9,7 @@ use ninebit::texture::cube::{Face, major_axis};
 use ninebit::texture::planned::PlannedUnit;
 use ninebit::texture::{lod, shader};
 
-use crate::binary::{Interpolant, counted};
+use crate::binary::{Interpolant, call, counted};
 use crate::code::{Code, Operand, Operation};
 use crate::helper::Helper;
 use crate::input::Input;
@@ -99,7 +99,8 @@ impl<'a> Unit<'a, '_, '_> {
 
     pub(crate) fn ratio(&self, s: Interpolant<'a>, q: Interpolant<'a>, size: Number<'a>) -> Number<'a> {
         let code = self.interpolator.code;
-        counted(code, Helper::Ratio, &[s.operand(code), q.operand(code), size.operand()])
+        let q = q.operand(code);
+        counted(code, Helper::Ratio, &[divided(code, s, q), q, size.operand()])
     }
 
     /// Returns u and v on a level in 1/256 texel.
@@ -114,8 +115,11 @@ impl<'a> Unit<'a, '_, '_> {
         };
         let (place, sample) = (self.place, self.sample);
         if let (Some(facing), Some(direction)) = (facing, self.direction(place, sample)) {
-            let [s, t, m] = self.on_face(direction, facing).map(|n| n.operand(code));
-            let of = |n: Operand, size: Number<'a>| counted(code, Helper::Face, &[n, m, size.operand()]);
+            let [s, t, m] = self.on_face(direction, facing);
+            let m = m.operand(code);
+            let of = |n: Interpolant<'a>, size: Number<'a>| {
+                counted(code, Helper::Face, &[divided(code, n, m), m, size.operand()])
+            };
             return named([of(s, sides[0]), of(t, sides[1])]);
         }
         let at = |n: usize| self.component(sample, n);
@@ -206,8 +210,8 @@ impl<'a> Unit<'a, '_, '_> {
         if let (Some(facing), Some(direction)) = (facing, self.direction(place, sample)) {
             let [s, t, m] = self.on_face(direction, facing);
             behind = behind | !is_positive(m);
-            let at = [s, t].map(|n| n.operand(code));
-            let of = |n: usize| counted(code, Helper::FarFace, &[at[n], m.operand(code), sides[n]]);
+            let m = m.operand(code);
+            let of = |n: usize| counted(code, Helper::FarFace, &[divided(code, [s, t][n], m), m, sides[n]]);
             return ([0, 1].map(of), behind);
         }
         let q = (matches!(place, Place::Own(Projection::Ratio))).then(|| self.component(sample, 3));
@@ -216,20 +220,27 @@ impl<'a> Unit<'a, '_, '_> {
         }
         let at = |n: usize| self.component(sample, n);
         let own = |n: usize| match (place, q) {
-            (_, Some(q)) => counted(code, Helper::FarRatio, &[at(n).operand(code), q.operand(code), sides[n]]),
+            (_, Some(q)) => far_floored(code, divided(code, at(n), q.operand(code)), sides[n]),
             (Place::Moved(offsets), _) => self.moved(at(n), offsets[n], sides[n], (16, FARTHEST)),
             (Place::Bytes(bytes, scale), _) => {
                 code.by("TSH-6");
                 shader::dependent(bytes[n], Number::new(code, sides[n]).up(Number::Constant(8)), scale)
             }
             (Place::Floats(floats), _) => counted(code, Helper::FarFloat, &[floats[n].operand(), sides[n]]),
-            (Place::Own(_) | Place::Vector(_), _) => {
-                let limit = Operand::Constant(FARTHEST);
-                counted(code, Helper::FarFloor, &[at(n).operand(code), sides[n], Operand::Constant(16), limit])
-            }
+            (Place::Own(_) | Place::Vector(_), _) => far_floored(code, at(n).operand(code), sides[n]),
         };
         ([0, 1].map(|n: usize| self.of_figure((n, pixel[n]), (sides[n], 16), || own(n))), behind)
     }
+}
+
+/// TEX-15: returns the quotient of a number by another.
+fn divided(code: &Code, s: Interpolant<'_>, q: Operand) -> Operand {
+    call(code, Helper::Quotient, &[s.operand(code), q])
+}
+
+/// TEX-11: returns a coordinate in 1/65536 texel.
+fn far_floored<'a>(code: &'a Code, number: Operand, side: Operand) -> Number<'a> {
+    counted(code, Helper::FarFloor, &[number, side, Operand::Constant(16), Operand::Constant(FARTHEST)])
 }
 
 /// TEX-10, TEX-11: returns the lod of a quad, of which a pixel may lie behind the viewer.

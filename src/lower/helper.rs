@@ -3,10 +3,9 @@
 use ninebit::number::{Integer, newton_root};
 use ninebit::raster::binary::Binary;
 use ninebit::raster::depth;
-use ninebit::raster::interpolate::{FARTHEST, face_coordinate, ratio};
+use ninebit::raster::interpolate::{FARTHEST, across_face, divided, ratio_coordinate};
 use ninebit::raster::stroke::sprite_coordinate;
 use ninebit::raster::weights::Number as _;
-use ninebit::texture::coordinates::quad_ratio;
 use ninebit::texture::{lod, shader, single};
 
 use crate::input::Local;
@@ -46,11 +45,11 @@ pub enum Helper {
     Floor,
     /// The same for distant numbers.
     FarFloor,
-    /// A coordinate s/q.
+    /// The quotient of two numbers to 24 bits.
+    Quotient,
+    /// A coordinate s/q, by the quotient.
     Ratio,
-    /// The same for distant numbers.
-    FarRatio,
-    /// A coordinate on a face.
+    /// A coordinate on a face, by a quotient.
     Face,
     /// The same for distant numbers.
     FarFace,
@@ -64,6 +63,8 @@ pub enum Helper {
     SingleProduct,
     /// A sum of binary32 numbers.
     SingleSum,
+    /// The aligned sum of three binary32 numbers.
+    AlignedSum,
     /// A quotient of whole numbers in binary32.
     SingleQuotient,
     /// A displaced coordinate.
@@ -107,7 +108,7 @@ const FAR: i64 = FARTHEST + (1 << 32);
 
 impl Helper {
     /// All helpers, in the order of the variants.
-    pub(crate) const ALL: [Helper; 35] = [
+    pub(crate) const ALL: [Helper; 36] = [
         Helper::Cut(Sign::Positive),
         Helper::Product(Sign::Positive),
         Helper::Share(Sign::Positive),
@@ -126,8 +127,8 @@ impl Helper {
         Helper::Depth,
         Helper::Floor,
         Helper::FarFloor,
+        Helper::Quotient,
         Helper::Ratio,
-        Helper::FarRatio,
         Helper::Face,
         Helper::FarFace,
         Helper::Level,
@@ -135,6 +136,7 @@ impl Helper {
         Helper::Rounded,
         Helper::SingleProduct,
         Helper::SingleSum,
+        Helper::AlignedSum,
         Helper::SingleQuotient,
         Helper::Moved,
         Helper::Float,
@@ -174,10 +176,10 @@ impl Helper {
             Helper::Depth => ("depth", "a b + c d + e f, each term to the 29th bit of the largest", "DEP-1"),
             Helper::Floor => ("floored", "floor(size a 2^power), up to a limit", "INT-4"),
             Helper::FarFloor => ("far_floored", "floor(size a 2^power), up to a limit", "TEX-11"),
-            Helper::Ratio => ("ratio", "floor(size a / b 2^8), up to a limit", "TEX-15"),
-            Helper::FarRatio => ("far_ratio", "floor(size a / b 2^16), up to a limit", "TEX-11, TEX-15"),
-            Helper::Face => ("face", "floor(2^8 size (a + b) / 2 b); 0 if b is not positive", "TEX-12"),
-            Helper::FarFace => ("far_face", "floor(2^16 size (a + b) / 2 b); 0 if b is not positive", "TEX-11, TEX-12"),
+            Helper::Quotient => ("quotient", "a / b by the reciprocal of b, to 24 bits; a if b is 0", "TEX-15"),
+            Helper::Ratio => ("ratio", "floor(size a 2^8), up to a limit; the limit if b is 0", "TEX-15"),
+            Helper::Face => ("face", "floor(2^7 size (1 + a)); 0 if b is not positive", "TEX-12"),
+            Helper::FarFace => ("far_face", "floor(2^15 size (1 + a)); 0 if b is not positive", "TEX-11, TEX-12"),
             Helper::Level => {
                 ("level", "floor(256 log2) of the larger distance from (a, b) to (c, d) or (e, f)", "TEX-10")
             }
@@ -185,6 +187,9 @@ impl Helper {
             Helper::Rounded => ("rounded", "the bits of the binary32 number nearest to a", "TSH-4"),
             Helper::SingleProduct => ("single_product", "a b of binary32 numbers, all as bits", "TSH-4"),
             Helper::SingleSum => ("single_sum", "a + b of binary32 numbers, all as bits", "TSH-4"),
+            Helper::AlignedSum => {
+                ("aligned_sum", "a + b + c of bits, each to the 24th bit of the largest, to its first 24 bits", "TSH-4")
+            }
             Helper::SingleQuotient => ("single_quotient", "the bits of a / b in binary32", "TSH-1"),
             Helper::Moved => ("moved", "floor(size (a + offset / 128) 2^power), up to a limit", "TSH-7"),
             Helper::Float => ("float", "floor(size f 2^8), up to a limit; 0 for a NaN", "TSH-4"),
@@ -213,18 +218,21 @@ impl Helper {
         match self {
             Helper::Cut(Sign::Positive) => &[COVERED],
             Helper::Cut(Sign::Any) => &[EDGE],
-            Helper::Product(_) | Helper::Share(_) | Helper::Rest(_) | Helper::CutRest => &[BINARY; 2],
+            Helper::Product(_) | Helper::Share(_) | Helper::Rest(_) | Helper::CutRest | Helper::Quotient => {
+                &[BINARY; 2]
+            }
             Helper::Sum(_) => &[BINARY; 3],
             Helper::Reciprocal(_) | Helper::Exponent => &[BINARY],
             Helper::Linear(_) => &[BINARY; 5],
             Helper::Depth => &[BINARY; 6],
             Helper::Floor => &FLOOR,
             Helper::FarFloor => &FAR_FLOOR,
-            Helper::Ratio | Helper::FarRatio | Helper::Face | Helper::FarFace => &[BINARY, BINARY, SIZE],
+            Helper::Ratio | Helper::Face | Helper::FarFace => &[BINARY, BINARY, SIZE],
             Helper::Level => &[COORDINATE; 6],
             Helper::Split => &[BITS],
             Helper::Rounded => &[BINARY],
             Helper::SingleProduct | Helper::SingleSum => &[BITS; 2],
+            Helper::AlignedSum => &[BITS; 3],
             Helper::SingleQuotient => &QUOTIENT,
             Helper::Moved => &MOVED,
             Helper::Float | Helper::FarFloat => &[BITS, SIZE],
@@ -247,10 +255,14 @@ impl Helper {
         match self {
             Helper::Exponent => EXPONENT,
             Helper::Floor | Helper::Ratio | Helper::Face | Helper::Float => (-(1 << 24), 1 << 24),
-            Helper::FarFloor | Helper::FarRatio | Helper::Moved | Helper::FarFloat => (-FARTHEST, FARTHEST),
+            Helper::FarFloor | Helper::Moved | Helper::FarFloat => (-FARTHEST, FARTHEST),
             Helper::FarFace => (-FAR, FAR),
             Helper::Level => (lod::LEAST.into(), 1 << 15),
-            Helper::Rounded | Helper::SingleProduct | Helper::SingleSum | Helper::SingleQuotient => BITS.1,
+            Helper::Rounded
+            | Helper::SingleProduct
+            | Helper::SingleSum
+            | Helper::AlignedSum
+            | Helper::SingleQuotient => BITS.1,
             Helper::Luminance => (0, 1 << 20),
             Helper::Sprite => (-(1 << 48), 1 << 48),
             Helper::Root => (0, 1 << 30),
@@ -289,6 +301,7 @@ impl Helper {
             Helper::Rounded => return Value::Number(single::rounded(a(0))),
             Helper::SingleProduct => return Value::Number(single::product(n(0), n(1))),
             Helper::SingleSum => return Value::Number(single::sum(n(0), n(1))),
+            Helper::AlignedSum => return Value::Number(single::aligned_sum([n(0), n(1), n(2)])),
             Helper::SingleQuotient => return Value::Number(single::quotient(n(0), n(1))),
             Helper::Moved => return Value::Number(shader::moved(a(0), n(1), n(2), n(3), n(4))),
             Helper::Float => return Value::Number(shader::coordinate(n(0), n(1))),
@@ -300,11 +313,11 @@ impl Helper {
             Helper::Exponent => return Value::Number(a(0).exponent::<false>()),
             Helper::Floor => return Value::Number(a(0).floored(n(1), n(2), n(3))),
             Helper::FarFloor => return Value::Number(a(0).far_floored(n(1), n(2), n(3))),
-            Helper::Ratio => return Value::Number(ratio(a(0), a(1), n(2))),
-            Helper::FarRatio => return Value::Number(quad_ratio(a(0), a(1), n(2))),
+            Helper::Quotient => divided(a(0), a(1)),
+            Helper::Ratio => return Value::Number(ratio_coordinate(a(0), a(1), n(2))),
             // On its own face a direction lies within it.
-            Helper::Face => return Value::Number(face_coordinate(a(0), a(1), n(2), 8).limited(0, 1 << 24)),
-            Helper::FarFace => return Value::Number(face_coordinate(a(0), a(1), n(2), 16)),
+            Helper::Face => return Value::Number(across_face(a(0), a(1), n(2), 8).limited(0, 1 << 24)),
+            Helper::FarFace => return Value::Number(across_face(a(0), a(1), n(2), 16)),
             Helper::Level => {
                 return Value::Number(lod::log2_of_steps([[n(0), n(1)], [n(2), n(3)], [n(4), n(5)]]));
             }
@@ -349,7 +362,7 @@ impl Helper {
         let name = match (self, at) {
             (Helper::Cut(_) | Helper::Root, _) => "n",
             (Helper::Floor | Helper::FarFloor, 1..) => ["", "size", "power", "limit"][at],
-            (Helper::Ratio | Helper::FarRatio | Helper::Face | Helper::FarFace, 2) => "size",
+            (Helper::Ratio | Helper::Face | Helper::FarFace, 2) => "size",
             (Helper::Moved, 1..) => ["", "offset", "size", "power", "limit"][at],
             (Helper::Float | Helper::FarFloat, _) => ["f", "size"][at],
             (Helper::Sprite, _) => ["d", "width", "size", "power"][at],

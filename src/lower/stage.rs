@@ -1,6 +1,6 @@
 //! Reads the stages of a texture shader (TSH-1 to TSH-10).
 
-use std::ops::{Add, Mul, Sub};
+use std::ops::{Add, Mul, Neg};
 
 use ninebit::number::{Integer, Register as _, convert};
 use ninebit::raster::binary::Binary;
@@ -23,11 +23,14 @@ use crate::whole::{Interpolator, Sample, Whole};
 pub(crate) struct Single<'a>(pub(crate) Number<'a>);
 
 impl<'a> Single<'a> {
-    pub(crate) fn called(helper: Helper, a: Number<'a>, b: Number<'a>) -> Single<'a> {
-        let of = [a.operand(), b.operand()];
-        Single(match a.code().or(b.code()) {
-            Some(code) => counted(code, helper, &of),
-            None => Number::Constant(helper.compute([a.range().0, b.range().0, 0, 0, 0, 0])),
+    pub(crate) fn called<const N: usize>(helper: Helper, of: [Number<'a>; N]) -> Single<'a> {
+        Single(match of.iter().find_map(|number| number.code()) {
+            Some(code) => counted(code, helper, &of.map(Number::operand)),
+            None => {
+                let mut constants = [0; 6];
+                constants.iter_mut().zip(of).for_each(|(constant, number)| *constant = number.range().0);
+                Number::Constant(helper.compute(constants))
+            }
         })
     }
 
@@ -39,7 +42,7 @@ impl<'a> Single<'a> {
     /// Returns the nearest to a fraction of [`dot::fractions`].
     pub(crate) fn fraction((numerator, denominator): (Number<'a>, Number<'a>)) -> Single<'a> {
         let (numerator, denominator) = (numerator.within(-(1 << 16), 1 << 16), denominator.within(1, 1 << 30));
-        Single::called(Helper::SingleQuotient, numerator, denominator)
+        Single::called(Helper::SingleQuotient, [numerator, denominator])
     }
 
     pub(crate) fn constant(value: f32) -> Single<'a> {
@@ -50,26 +53,31 @@ impl<'a> Single<'a> {
 impl<'a> Add for Single<'a> {
     type Output = Single<'a>;
     fn add(self, other: Single<'a>) -> Single<'a> {
-        Single::called(Helper::SingleSum, self.0, other.0)
+        Single::called(Helper::SingleSum, [self.0, other.0])
     }
 }
 
-impl<'a> Sub for Single<'a> {
+impl<'a> Neg for Single<'a> {
     type Output = Single<'a>;
-    fn sub(self, other: Single<'a>) -> Single<'a> {
-        Single::called(Helper::SingleSum, self.0, single::negated(other.0))
+    fn neg(self) -> Single<'a> {
+        Single(single::negated(self.0))
     }
 }
 
 impl<'a> Mul for Single<'a> {
     type Output = Single<'a>;
     fn mul(self, other: Single<'a>) -> Single<'a> {
-        Single::called(Helper::SingleProduct, self.0, other.0)
+        Single::called(Helper::SingleProduct, [self.0, other.0])
     }
 }
 
 impl dot::Number for Single<'_> {
+    const ZERO: Self = Single(Number::Constant(0));
     const TWO: Self = Single(Number::Constant(0x4000_0000));
+
+    fn sum(products: [Self; 3]) -> Self {
+        Single::called(Helper::AlignedSum, products.map(|product| product.0))
+    }
 }
 
 /// The results of the stages so far.
@@ -280,7 +288,7 @@ pub(crate) fn byte<'a>(held: Number<'a>, is_doubled: Truth<'a>) -> Number<'a> {
 /// TSH-7: returns the displacement by a row of the matrix and by blue and green.
 pub(crate) fn moved<'a>(entries: [Single<'a>; 2], blue_green: [Number<'a>; 2]) -> Single<'a> {
     let one = Number::Constant(1);
-    let signed = blue_green.map(|byte| Single::called(Helper::SingleQuotient, dot::signed(byte, 8), one));
+    let signed = blue_green.map(|byte| Single::called(Helper::SingleQuotient, [dot::signed(byte, 8), one]));
     dot::moved(entries, signed)
 }
 

@@ -231,7 +231,7 @@ pub(super) fn expression(step: &Step) -> String {
         }
         "floor_face_u" | "floor_face_v" | "quad_face_u" | "quad_face_v" => {
             let ((s, m), steps) = (on_face(step), if step.operation.starts_with("quad") { 32768 } else { 128 });
-            format!("floor({steps} * {} * ({} + {}) / {})", value(4), decimal(s), decimal(m), decimal(m))
+            format!("floor({steps} * {} * (1 + {} / {}))", value(4), decimal(s), decimal(m))
         }
         "log2_ratio" => {
             let moved = |pixel: usize, n: usize| {
@@ -255,9 +255,11 @@ pub(super) fn expression(step: &Step) -> String {
         "is_not_negative" => format!("{} >= 0", name(0)),
         "floor_moved" => format!("floor(256 * {} * ({} + {} / 128))", value(2), name(0), value(1)),
         "float_product" => format!("{} * {}", value(0), value(1)),
-        "float_sum" => format!("({} + {}) + {}", value(0), value(1), value(2)),
+        "float_sum" => format!("{} + {} + {}, to 24 bits of the largest", value(0), value(1), value(2)),
         "float_double" => format!("2 * {}", value(0)),
-        "float_reflection" => format!("{} * {} - {} * {}", value(0), value(1), value(2), value(3)),
+        "float_reflection" => {
+            format!("{} * {} - {} * {}, to 24 bits of the larger", value(0), value(1), value(2), value(3))
+        }
         "luminance" => format!("4096 * {} / 255 * ({} / 255 * {} + {})", value(0), value(1), value(2), value(3)),
         "convert_yuv_red" => {
             format!("(149 * {} >> 7) + 2 * (409 * {} >> 9) - 223, limited to 0..255", value(0), value(2))

@@ -263,9 +263,7 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         }
         "floor_float" => Number::new(shader::floor_float(inputs), 256),
         "float_face" => plain(shader::face(inputs)),
-        "floor_float_face_u" | "floor_float_face_v" => {
-            Number::new(shader::face_coordinate(inputs, operation.ends_with('u')), 256)
-        }
+        "floor_float_face_u" | "floor_float_face_v" => shader::face_coordinate(inputs, operation.ends_with('u')),
         "dependent_255" => Number::new(256 * v(1) * v(0) / 255, 256),
         "dependent_256" => Number::new(v(1) * v(0), 256),
         "bump_offset" => shader::bump_offset(inputs),

@@ -1,6 +1,6 @@
-//! Recomputes the operations of the texture shader. Single precision is computed by the processor, everything else in exact fractions.
+//! Recomputes the operations of the texture shader. Products in single precision are computed by the processor, everything else in exact fractions.
 
-use super::Number;
+use super::{Number, weights};
 
 type Inputs = [(String, Number)];
 
@@ -61,16 +61,10 @@ pub fn float(operation: &str, inputs: &Inputs) -> Number {
     let f = |n: usize| single(inputs, n);
     bits(match operation {
         "float_product" => f(0) * f(1),
-        "float_sum" => f(0) + f(1) + f(2),
-        "float_dot" => {
-            let products = [0, 2, 4].map(|n| f(n) * f(n + 1));
-            products[0] + products[1] + products[2]
-        }
+        "float_sum" => weights::cut_sum([0, 1, 2].map(f)),
+        "float_dot" => weights::cut_sum([0, 2, 4].map(|n| f(n) * f(n + 1))),
         "float_double" => 2.0 * f(0),
-        _ => {
-            let products = [f(0) * f(1), f(2) * f(3)];
-            products[0] - products[1]
-        }
+        _ => weights::cut_sum([f(0) * f(1), -(f(2) * f(3)), 0.0]),
     })
 }
 
@@ -111,24 +105,9 @@ pub fn face(inputs: &Inputs) -> i128 {
     2 * axis as i128 + i128::from(vector[axis] < 0.0)
 }
 
-pub fn face_coordinate(inputs: &Inputs, u: bool) -> i128 {
-    let [x, y, z] = vector(inputs);
-    let (s, t, m) = match value(inputs, 3) {
-        0 => (-z, -y, x),
-        1 => (z, -y, -x),
-        2 => (x, z, y),
-        3 => (x, -z, -y),
-        4 => (x, -y, z),
-        _ => (-x, -y, -z),
-    };
-    if m == 0.0 {
-        return 0;
-    }
-    // floor(128 size (s/m + 1)): the largest n with (n - 128 size) m <= 128 size s. Doubles hold both products exactly.
-    let (minor, half) = (if u { s } else { t }, 128 * value(inputs, 4));
-    let guess = (minor / m * half as f64).floor() as i128;
-    let fits = |n: &i128| *n as f64 * m <= half as f64 * minor;
-    half + (guess - 2..=guess + 2).rfind(fits).unwrap()
+pub fn face_coordinate(inputs: &Inputs, u: bool) -> Number {
+    let is_finite = (0..3).all(|n| single(inputs, n).is_finite());
+    if is_finite { weights::face_coordinate(inputs, u, 256) } else { Number::new(0, 256) }
 }
 
 /// Returns a x + b y exactly, as numerator and exponent.

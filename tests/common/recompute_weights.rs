@@ -95,6 +95,38 @@ fn last_bit(terms: &[Exact], bits: i32) -> Option<i32> {
     terms.iter().filter(|term| term.m != 0).map(|term| term.first()).max().map(|first| first - bits + 1)
 }
 
+/// WGT-1 (3): returns R.
+fn reciprocal(x: Exact) -> Exact {
+    let Exact { m, e: power } = x.odd();
+    let (m, sign) = (m.abs(), m.signum());
+    if m == 1 {
+        return Exact { m: sign, e: -power };
+    }
+    let s = m.ilog2() as i32;
+    let n = Exact { m, e: -s };
+    let two_less = |n: Exact| Exact { m: 2, e: 0 }.minus(n);
+    let c = 2 * ((m << 7) >> s) + 1;
+    let first = Exact { m: (65536 + c) / (2 * c), e: -7 };
+    let second = two_less(first.times(n.cut_at(-14))).times(first);
+    let second = second.plus(Exact { m: 1, e: -16 }).cut_at(-15);
+    let third = two_less(second.times(n)).cut_at(-30).times(second).cut_at(-29);
+    Exact { m: sign * third.m, e: third.e - s - power }
+}
+
+/// TSH-4: returns the sum of three floats, each cut at the 24th bit of the largest, cut to 24 bits. One that is not finite makes it a sum of doubles.
+pub fn cut_sum(terms: [f32; 3]) -> f32 {
+    if terms.iter().any(|term| !term.is_finite()) {
+        return terms.iter().map(|term| f64::from(*term)).sum::<f64>() as f32;
+    }
+    let x = terms.map(|term| {
+        let (m, e) = shader::apart(term);
+        Exact { m, e }.odd()
+    });
+    let Some(place) = last_bit(&x, 24) else { return 0.0 };
+    let Exact { m, e } = x.iter().fold(Exact { m: 0, e: 0 }, |sum, term| sum.plus(term.cut_at(place))).cut(24);
+    (m as f64 * 2.0_f64.powi(e)) as f32
+}
+
 pub fn number(operation: &str, inputs: &Inputs) -> Number {
     let x: Vec<Exact> = inputs.iter().map(|input| Exact::new(input.1)).collect();
     let one = Exact { m: 1, e: 0 };
@@ -106,23 +138,7 @@ pub fn number(operation: &str, inputs: &Inputs) -> Number {
             let sum = x.iter().fold(Exact { m: 0, e: 0 }, |sum, term| sum.plus(term.cut_at(place)));
             if sum.m == 0 { Exact { m: 1, e: place } } else { sum }
         }
-        "reciprocal" => {
-            let (m, sign) = (x[0].odd().m.abs(), x[0].m.signum());
-            let power = x[0].odd().e;
-            if m == 1 {
-                Exact { m: sign, e: -power }
-            } else {
-                let s = m.ilog2() as i32;
-                let n = Exact { m, e: -s };
-                let two_less = |n: Exact| Exact { m: 2, e: 0 }.minus(n);
-                let c = 2 * ((m << 7) >> s) + 1;
-                let first = Exact { m: (65536 + c) / (2 * c), e: -7 };
-                let second = two_less(first.times(n.cut_at(-14))).times(first);
-                let second = second.plus(Exact { m: 1, e: -16 }).cut_at(-15);
-                let third = two_less(second.times(n)).cut_at(-30).times(second).cut_at(-29);
-                Exact { m: sign * third.m, e: third.e - s - power }
-            }
-        }
+        "reciprocal" => reciprocal(x[0]),
         "rest_24" => {
             let rest = one.minus(x[0]).minus(x[1]);
             let cut = rest.cut(24);
@@ -142,10 +158,18 @@ pub fn number(operation: &str, inputs: &Inputs) -> Number {
     result.number()
 }
 
+/// TEX-15: returns x/y for a y other than 0.
+fn divided(x: Exact, y: Exact) -> Exact {
+    x.cut(24).times(reciprocal(y)).cut(24)
+}
+
 /// Returns floor(scale x) or floor(scale x / y), limited, as so many parts of 1. A division by 0 is infinite, and 0/0 is 0.
 pub fn floor(of: &[Number], scale: i128, per_one: i128, limit: i128) -> Number {
-    let x = Exact::new(of[0]);
-    let y = of.get(1).map_or(Exact { m: 1, e: 0 }, |y| Exact::new(*y));
+    let one = Exact { m: 1, e: 0 };
+    let (x, y) = match (Exact::new(of[0]), of.get(1).map(|y| Exact::new(*y))) {
+        (x, Some(y)) if y.m != 0 => (divided(x, y), one),
+        (x, y) => (x, y.unwrap_or(one)),
+    };
     Number::new(quotient(Exact { m: x.m * scale, e: x.e }, y, limit), per_one)
 }
 
@@ -208,7 +232,7 @@ pub fn face(inputs: &Inputs) -> i128 {
     2 * axis as i128 + i128::from(d[axis].m < 0)
 }
 
-/// Returns floor(per_one size (s + m) / 2 m) on the face of input 3.
+/// Returns floor(per_one size (1 + q) / 2) of q = s/m on the face of input 3.
 pub fn face_coordinate(inputs: &Inputs, u: bool, per_one: i128) -> Number {
     let [x, y, z] = [0, 1, 2].map(|k| Exact::new(inputs[k].1));
     let minus = |n: Exact| Exact { m: -n.m, ..n };
@@ -224,7 +248,8 @@ pub fn face_coordinate(inputs: &Inputs, u: bool, per_one: i128) -> Number {
     if m.m == 0 {
         return Number::new(0, per_one);
     }
-    Number::new(half + quotient(Exact { m: minor.m * half, e: minor.e }, m, 1 << 61), per_one)
+    let q = divided(minor, m);
+    Number::new(half + quotient(Exact { m: q.m * half, e: q.e }, Exact { m: 1, e: 0 }, 1 << 61), per_one)
 }
 
 /// Returns the single-precision number nearest to a number of at most 53 bits, which a double holds.

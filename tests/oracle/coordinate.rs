@@ -1,7 +1,8 @@
 //! Computes where a unit samples: INT-4, TEX-11, TEX-12, TEX-13, TEX-15, and the coordinates of the texture shader.
 
 use super::raster::{Sample, Setup};
-use super::real::{Number, bits, floor_div, floor_ratio, floor_sum};
+use super::real::{Number, bits, floor_div, floor_sum};
+use super::weights::reciprocal;
 
 /// INT-4: the limit of 65536 texels, in 1/256 texel. It also applies to coordinates that the texture shader computes.
 const LIMIT: i128 = 1 << 24;
@@ -111,12 +112,12 @@ impl Place {
         let scale = size.map(|n| i128::from(n) << 16);
         let on = |v: [Number; 3]| {
             let (minor, major) = project(face, v);
-            (major.m > 0).then(|| minor.map(|sc| floor_ratio(sc, major, scale[0] >> 1) + (scale[0] >> 1)))
+            (major.m > 0).then(|| minor.map(|sc| across(sc, major, scale[0] >> 1)))
         };
         match self {
             Place::Set(set) => {
                 let q = setup.component(sample, *set, 3);
-                (q.m > 0).then(|| [0, 1].map(|a| floor_ratio(setup.component(sample, *set, a), q, scale[a])))
+                (q.m > 0).then(|| [0, 1].map(|a| quotient(setup.component(sample, *set, a), q).floor(scale[a])))
             }
             Place::Moved(set, by) => Some([0, 1].map(|a| moved(setup.component(sample, *set, a), by[a], scale[a]))),
             Place::Direction(set) => on(setup.vector(sample, *set)),
@@ -137,7 +138,14 @@ fn ratio(s: Number, q: Number, size: u32) -> i128 {
     if q.m == 0 {
         return s.m.signum() * LIMIT;
     }
-    limited(floor_ratio(s, q, 256 * i128::from(size)))
+    limited(quotient(s, q).floor(256 * i128::from(size)))
+}
+
+/// TEX-15: returns s / q for a q other than 0.
+fn quotient(s: Number, q: Number) -> Number {
+    let r = reciprocal(Number { m: q.m.abs(), ..q });
+    let cut = s.cut(24).times(r).cut(24);
+    if q.m < 0 { -cut } else { cut }
 }
 
 /// TSH-7: returns floor(scale (f + by / 128)). There is no division by q.
@@ -151,7 +159,12 @@ fn on_face(v: [Number; 3], size: u32) -> (usize, [i128; 2]) {
     let (minor, major) = project(face, v);
     let scale = 128 * i128::from(size);
     // The zero vector has none.
-    (face, minor.map(|sc| if major.m == 0 { 0 } else { floor_ratio(sc, major, scale) + scale }))
+    (face, minor.map(|sc| if major.m == 0 { 0 } else { across(sc, major, scale) }))
+}
+
+/// TEX-12: returns floor(scale (1 + q)) of the quotient q of a minor and the major component.
+fn across(minor: Number, major: Number, scale: i128) -> i128 {
+    quotient(minor, major).floor(scale) + scale
 }
 
 /// TEX-13: returns a direction of floats, unless one is not finite. Such a direction and the zero vector read the same.

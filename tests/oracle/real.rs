@@ -96,22 +96,6 @@ impl Neg for Number {
     }
 }
 
-/// Returns floor(scale n / d) for d other than 0, limited to about +-2^100. `scale` and both numbers have at most 60 bits together.
-pub fn floor_ratio(n: Number, d: Number, scale: i128) -> i128 {
-    let (numerator, denominator) = (n.m * scale * d.m.signum(), d.m.abs());
-    let up = n.e - d.e;
-    if numerator == 0 {
-        0
-    } else if up >= 0 {
-        if bits(numerator) + up > 126 { numerator.signum() << 100 } else { (numerator << up).div_euclid(denominator) }
-    } else if bits(denominator) - up > 126 {
-        // The denominator would be larger than any numerator.
-        if numerator < 0 { -1 } else { 0 }
-    } else {
-        numerator.div_euclid(denominator << -up)
-    }
-}
-
 /// Returns floor(numerator / denominator) for any signs, and whether the remainder is 0.
 pub fn floor_div(numerator: i128, denominator: i128) -> (i128, bool) {
     let (n, d) = if denominator < 0 { (-numerator, -denominator) } else { (numerator, denominator) };

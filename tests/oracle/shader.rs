@@ -7,6 +7,7 @@ use super::sampling;
 use super::tally::{count, count_named};
 use super::texel::{Color, signed};
 use super::texture::Image;
+use super::weights::sum;
 use ninebit::state::{DependentScale, DotMapping, Draw, Policies, ShaderOperation};
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -199,7 +200,7 @@ impl<'a> Units<'a> {
         count_named(stage.mapping);
         let v = mapped(stage.mapping, self.previous(k, i, j, sample));
         let [s, t, r] = [0, 1, 2].map(|c| self.float(sample, stage.coordinate_set, c));
-        v[0] * s + v[1] * t + v[2] * r
+        aligned([v[0] * s, v[1] * t, v[2] * r])
     }
 
     /// TEX-11: returns the lod of the quad that contains a pixel.
@@ -263,12 +264,21 @@ fn root_in_pieces(left: i128) -> (i128, i32) {
     ((256 * start + rise * along) >> 11, -15 - k)
 }
 
+/// TSH-4: returns the sum aligned at 24 bits and cut to 24 bits.
+fn aligned(terms: [f32; 3]) -> f32 {
+    if terms.iter().any(|term| !term.is_finite()) {
+        return terms.into_iter().map(f64::from).sum::<f64>() as f32;
+    }
+    let sum = sum(terms.map(Number::of), 24).cut(24);
+    nearest_f32(sum.m, 1, sum.e)
+}
+
 /// TSH-5: returns 2 (n.e) n - (n.n) e.
 fn reflect(n: [f32; 3], e: [f32; 3]) -> [f32; 3] {
-    let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let dot = |a: [f32; 3], b: [f32; 3]| aligned([0, 1, 2].map(|c| a[c] * b[c]));
     let (twice, square) = (2.0 * dot(n, e), dot(n, n));
     [0, 1, 2].map(|c| {
         let (along, eye) = (twice * n[c], square * e[c]);
-        along - eye
+        aligned([along, -eye, 0.0])
     })
 }

@@ -176,32 +176,6 @@ impl<I: Integer> Binary<I> {
         floor.least(limit).greatest(zero - limit)
     }
 
-    /// Returns floor(`scale` * self / `by` * 2^`power`), exactly, limited to `limit` in magnitude: at most 2^32, or 2^61 if `FAR`. The product of
-    /// mantissa and scale must fit into 60 bits, and `by`, which must not be 0, into 30.
-    #[inline(always)]
-    pub fn floored_ratio<const FAR: bool>(self, by: Binary<I>, scale: I, power: I, limit: I) -> I {
-        let (zero, one) = (I::new(0), I::new(1));
-        let (product, divisor) = (self.mantissa.magnitude() * scale, by.mantissa.magnitude().greatest(one));
-        let exponent = self.exponent - by.exponent + power;
-        let (above, below) = (product.bits(), divisor.bits());
-        // A fraction below 1/2 stays one.
-        let down = (zero - exponent).least(above - below + I::new(2)).greatest(zero);
-        let up = exponent.least(I::new(62) - above).greatest(zero);
-        let (n, d) = (product.up(up), divisor.up(down));
-        let mut floor = n.quotient(d);
-        let mut rest = n - floor * d;
-        if FAR {
-            // What is left to shift where the numerator would not fit. If the result would not fit either, it is beyond the limit.
-            let more = (exponent - up).least(I::new(62) - floor.bits()).limited(0, 31);
-            let further = rest.up(more);
-            let last = further.quotient(d);
-            (floor, rest) = (floor.up(more) + last, further - last * d);
-        }
-        let below_zero = zero - floor - zero.or(rest.is_zero(), one);
-        let floor = below_zero.or(self.mantissa.is_negative() ^ by.mantissa.is_negative(), floor);
-        floor.least(limit).greatest(zero - limit)
-    }
-
     /// Returns floor(`scale` * (self + `other`) * 2^`power`), exactly, limited to `limit` in magnitude, which is at most 2^61. The products of mantissas
     /// and scale must fit into 48 bits.
     pub fn floored_sum(self, other: Binary<I>, scale: I, power: I, limit: I) -> I {

@@ -2,7 +2,7 @@
 
 use super::binary::Binary;
 use super::setup::Triangle;
-use super::weights::{Linear, Number, Weights};
+use super::weights::{Linear, Number, Weights, quotient};
 use crate::number::{Blend, Integer};
 use std::cell::OnceCell;
 
@@ -72,20 +72,38 @@ pub fn coordinate<I: Integer>(value: Binary<I>, size: I) -> I {
     value.floored(size, I::new(8), I::new(COORDINATE_LIMIT))
 }
 
+/// TEX-15: returns s/q, or s where q is 0.
+#[inline]
+pub fn divided<I: Integer>(s: Binary<I>, q: Binary<I>) -> Binary<I> {
+    quotient(s, Binary::one().or(q.mantissa.is_zero(), q).reciprocal::<false>())
+}
+
 /// TEX-15: returns s/q of an image of `size` texels in 1/256 texel. A division by 0 is infinite; 0/0 is 0.
 #[inline]
 pub fn ratio<I: Integer>(s: Binary<I>, q: Binary<I>, size: I) -> I {
-    let (zero, limit) = (I::new(0), I::new(COORDINATE_LIMIT));
-    let infinite = zero.or(s.mantissa.is_zero(), limit.negated(s.mantissa.is_negative()));
-    infinite.or(q.mantissa.is_zero(), s.floored_ratio::<false>(q, size, I::new(8), limit))
+    ratio_coordinate(divided(s, q), q, size)
 }
 
-/// TEX-12: returns floor(2^`bits` n (s + m) / 2 m) of a face of n texels, for a minor direction s and the major direction m. It is 0 where m is not
+/// TEX-15: returns the coordinate of the quotient of a number [divided] by q.
+#[inline]
+pub fn ratio_coordinate<I: Integer>(quotient: Binary<I>, q: Binary<I>, size: I) -> I {
+    let (zero, limit, n) = (I::new(0), I::new(COORDINATE_LIMIT), quotient.mantissa);
+    let infinite = zero.or(n.is_zero(), limit.negated(n.is_negative()));
+    infinite.or(q.mantissa.is_zero(), coordinate(quotient, size))
+}
+
+/// TEX-12: returns floor(2^`bits` n (1 + s/m) / 2) of a face of n texels, for a minor direction s and the major direction m. It is 0 where m is not
 /// positive, as for the zero vector (TEX-13).
 #[inline]
 pub fn face_coordinate<I: Integer>(s: Binary<I>, m: Binary<I>, size: I, bits: i64) -> I {
+    across_face(divided(s, m), m, size, bits)
+}
+
+/// TEX-12: returns the coordinate on a face of the quotient of a minor direction [divided] by the major direction m.
+#[inline]
+pub fn across_face<I: Integer>(q: Binary<I>, m: Binary<I>, size: I, bits: i64) -> I {
     let (zero, power) = (I::new(0), I::new(bits - 1));
-    let coordinate = size.up(power) + s.floored_ratio::<true>(m, size, power, I::new(FARTHEST));
+    let coordinate = size.up(power) + q.far_floored(size, power, I::new(FARTHEST));
     coordinate.or(zero.is_below(m.mantissa), zero)
 }
 

@@ -134,6 +134,18 @@ pub fn outer_weights_by<N: Number, const COVERED: bool>(b: [N; 3], rest: impl Fn
     [rest.or(first, b[0]), rest.or(third, b[2])]
 }
 
+/// TSH-4: returns the sum of three numbers of 24 bits, each toward zero to a multiple of the 24th bit of the largest magnitude, to its first 24 bits.
+#[inline(always)]
+pub fn cut_sum<N: Number>([x, y, z]: [N; 3]) -> N {
+    N::linear(x, [y, z].map(|term| [N::one(), term])).cut()
+}
+
+/// TEX-15: returns the quotient of a number by another, whose reciprocal is given: the first is cut to 24 bits, and so is the product.
+#[inline(always)]
+pub fn quotient<N: Number>(number: N, reciprocal: N) -> N {
+    number.cut().product::<29>(reciprocal)
+}
+
 /// A number of the vertices, as [`Linear::at`] takes it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Linear<N> {

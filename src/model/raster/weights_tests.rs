@@ -152,3 +152,33 @@ fn equal_weights_go_round() {
         [[true, false], [false, false], [false, true], [false, true]]
     );
 }
+
+/// TSH-4: terms below the last bit vanish, one by one, and a sum of more bits is cut again.
+#[test]
+fn sums_are_cut() {
+    let unit = 2.0_f32.powi(-23);
+    let cases = [
+        ([1.0, unit / 2.0, unit / 2.0], 1.0),
+        ([1.0, -unit / 2.0, 0.0], 1.0),
+        ([1.0, 1.0 + unit, 0.0], 2.0),
+        ([unit, -1.0, 1.0 - unit / 2.0], 0.0),
+    ];
+    for (terms, wanted) in cases {
+        assert_eq!(cut_sum(terms.map(f64::from)), f64::from(wanted), "{terms:?}");
+        assert_eq!(cut_sum(terms.map(Binary::new)).nearest_f32(), wanted, "{terms:?}");
+    }
+}
+
+/// TEX-15: a number over itself is 1 only by a power of two; of 26 bits two are cut first.
+#[test]
+fn quotients_are_low() {
+    let below = 1.0 - 2.0_f64.powi(-24);
+    for (number, by, wanted) in
+        [(4.0, 4.0, 1.0), (3.0, 3.0, below), (-3.0, 3.0, -below), (67_108_863.0, 1.0, 67_108_860.0)]
+    {
+        assert_eq!(quotient(number, f64::reciprocal::<true>(by)), wanted, "{number} / {by}");
+        let [number, by] = [number, by].map(Binary::from_double).map(|n| n.first_bits(26));
+        let found = quotient(number, by.reciprocal::<true>());
+        assert_eq!(double(found), wanted, "{number:?} / {by:?}");
+    }
+}

@@ -222,7 +222,7 @@ impl<L: Lane> Chain<'_, L> {
         let vector = dot::remap(mapping, color.bytes);
         let products = dot::products(coordinates, vector);
         observer.count(Work::Dots, dot::DOT_OPERATIONS);
-        let mut dot = Dot { fixed: dot::sum(products), real: 0.0 };
+        let mut dot = Dot { fixed: dot::Number::sum(products), real: 0.0 };
         if Self::wants_real::<O>() {
             let [s, t, r, _] = self.real_coordinates(index, at.sample);
             let real = color.real.remap(mapping);

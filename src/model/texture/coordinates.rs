@@ -8,7 +8,7 @@ use super::planned::PlannedUnit;
 use super::report::Report;
 use crate::number::Integer;
 use crate::raster::binary::Binary;
-use crate::raster::interpolate::{COORDINATE_LIMIT, FARTHEST, Sample, coordinate, face_coordinate, ratio};
+use crate::raster::interpolate::{COORDINATE_LIMIT, FARTHEST, Sample, coordinate, divided, face_coordinate, ratio};
 use crate::raster::stroke::sprite_coordinate;
 use crate::raster::weights::Linear;
 use crate::raster::{ideal, setup::Triangle};
@@ -439,7 +439,7 @@ pub fn quad_coordinate<I: Integer>(value: Binary<I>, size: I) -> I {
 /// TEX-11, TEX-15: returns s/q of an image of `size` texels in 1/65536 texel, for a q that is not 0.
 #[inline]
 pub fn quad_ratio<I: Integer>(s: Binary<I>, q: Binary<I>, size: I) -> I {
-    s.floored_ratio::<true>(q, size, I::new(16), I::new(FARTHEST))
+    quad_coordinate(divided(s, q), size)
 }
 
 /// Returns the ideal's coordinate on a level in 1/256 texel, limited as in TEX-15.

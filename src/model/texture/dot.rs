@@ -1,26 +1,46 @@
 //! TSH-1 to TSH-5, TSH-7: the dot unit. It computes in single precision, because the chip does, and is the only place
 //! of the fixed path with floats.
 //!
-//! It uses only + - * / of IEEE single precision, each rounded separately in the order written here; nothing is fused.
+//! Products and quotients are those of IEEE single precision, each rounded separately; nothing is fused. Sums are aligned ones of WGT-1.
 //! Every machine therefore computes the same bits, except those of a NaN, which counts as 0 wherever it is used.
 #![allow(clippy::float_arithmetic, reason = "the chip's dot unit is a float unit (TSH-4); its ideal stands beside it")]
 
 use crate::number::Integer;
+use crate::raster::weights::cut_sum;
 use crate::state::DotMapping;
-use std::ops::{Add, Mul, Sub};
+use std::ops::{Add, Mul, Neg};
 
 /// A number of the dot unit: `f32` for the definition, `f64` for the ideal.
-pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+pub trait Number: Copy + Add<Output = Self> + Mul<Output = Self> + Neg<Output = Self> {
+    /// The number 0.
+    const ZERO: Self;
     /// The number 2.
     const TWO: Self;
+
+    /// TSH-4: returns the sum of products.
+    fn sum(products: [Self; 3]) -> Self;
 }
 
 impl Number for f32 {
+    const ZERO: f32 = 0.0;
     const TWO: f32 = 2.0;
+
+    /// The sum has 24 bits: it is a binary32 number or beyond them all, which is infinite. A zero becomes positive. Products that are infinite or no
+    /// numbers are added as doubles.
+    #[inline(always)]
+    fn sum(products: [f32; 3]) -> f32 {
+        cut_sum(products.map(f64::from)) as f32 + 0.0
+    }
 }
 
 impl Number for f64 {
+    const ZERO: f64 = 0.0;
     const TWO: f64 = 2.0;
+
+    #[inline(always)]
+    fn sum([x, y, z]: [f64; 3]) -> f64 {
+        (x + y) + z
+    }
 }
 
 /// A vector of three numbers, such as coordinates or a remapped colour.
@@ -118,16 +138,10 @@ pub fn products<N: Number>(a: Vector<N>, b: Vector<N>) -> Vector<N> {
     [a[0] * b[0], a[1] * b[1], a[2] * b[2]]
 }
 
-/// TSH-4: adds three products, starting with the first two.
-#[inline(always)]
-pub fn sum<N: Number>([x, y, z]: Vector<N>) -> N {
-    (x + y) + z
-}
-
 /// TSH-4: returns the dot product.
 #[inline(always)]
 pub fn dot<N: Number>(a: Vector<N>, b: Vector<N>) -> N {
-    sum(products(a, b))
+    N::sum(products(a, b))
 }
 
 /// TSH-7: returns the displacement of a coordinate, which is two matrix entries times blue and green. Each operation is
@@ -173,7 +187,7 @@ pub fn scale<N: Number>(toward: N) -> N {
 /// TSH-5: returns a component of a reflection, by those of the normal and the eye vector.
 #[inline(always)]
 pub fn reflected<N: Number>([scale, square]: [N; 2], [normal, eye]: [N; 2]) -> N {
-    scale * normal - square * eye
+    N::sum([scale * normal, -(square * eye), N::ZERO])
 }
 
 /// TSH-5: reflects the eye vector about a normal, of which `square` counts as the squared length.
@@ -279,14 +293,19 @@ mod tests {
             prop_assert!((0.0..=1.3 / f64::from(1 << 14)).contains(&off), "{}", off);
         }
 
-        /// Each operation is correctly rounded. A single operation may be checked in double precision and rounded to
-        /// single.
+        /// Each product is correctly rounded: double precision holds it exactly. The sum is that of whole steps, which are cut.
         #[test]
         fn no_operation_is_fused(a in prop::array::uniform3(-2.0..2.0_f32), b in prop::array::uniform3(-2.0..2.0_f32)) {
             let by_double = |x: f32, y: f32, of: fn(f64, f64) -> f64| of(f64::from(x), f64::from(y)) as f32;
-            let [x, y, z]: [f32; 3] = std::array::from_fn(|n| by_double(a[n], b[n], |x, y| x * y));
-            let sum = by_double(by_double(x, y, |x, y| x + y), z, |x, y| x + y);
-            prop_assert_eq!(dot(a, b), sum);
+            let products: [f32; 3] = std::array::from_fn(|n| by_double(a[n], b[n], |x, y| x * y));
+            let largest = products.iter().fold(0.0_f32, |most, product| most.max(product.abs()));
+            let step = f64::from(largest).log2().floor().exp2() / f64::from(1 << 23);
+            let steps: i64 = products.iter().map(|product| (f64::from(*product) / step) as i64).sum();
+            // Three terms of 24 bits may have 26.
+            let over = (64 - steps.unsigned_abs().leading_zeros()).saturating_sub(24);
+            let sum = (steps.signum() * (steps.abs() >> over << over)) as f64 * step;
+            prop_assert_eq!(f64::from(dot(a, b)), sum);
+            let [x, y, _] = products;
             prop_assert_eq!(moved([a[0], a[1]], [b[0], b[1]]), by_double(x, y, |x, y| x + y));
         }
 

@@ -1,10 +1,11 @@
-//! Single precision in whole numbers: sums, products and quotients of patterns of binary32, rounded to nearest with ties to even.
+//! Single precision in whole numbers: sums, products and quotients of patterns of binary32, rounded to nearest with ties to even, and aligned sums.
 //!
-//! All functions give what a machine's binary32 gives, but for the sign of zero and the pattern of a NaN, which nothing depends on. Machines whose
+//! All functions but the last give what a machine's binary32 gives, but for the sign of zero and the pattern of a NaN, which nothing depends on. Machines whose
 //! floats are not those of the standard run the printed text of these.
 
 use crate::number::Integer;
 use crate::raster::binary::Binary;
+use crate::raster::weights::cut_sum;
 use crate::state::CompareFunction;
 
 /// The pattern of infinity.
@@ -97,6 +98,17 @@ pub fn sum<I: Integer>(a: I, b: I) -> I {
     I::new(NAN).or(is_nan(a) | is_nan(b) | opposite, infinite.or(is_infinite(a) | is_infinite(b), finite))
 }
 
+/// TSH-4: returns the aligned sum of three numbers, cut to 24 bits.
+pub fn aligned_sum<I: Integer>(terms: [I; 3]) -> I {
+    // No bit of the sum is below that of the smallest numbers, so that this rounds none.
+    let finite = rounded(cut_sum(terms.map(Binary::from_bits)));
+    let any = |choices: [I::Choice; 3]| choices[0] | choices[1] | choices[2];
+    let above = any(terms.map(|x| is_infinite(x) & !is_negative(x)));
+    let below = any(terms.map(|x| is_infinite(x) & is_negative(x)));
+    let infinite = signed(I::new(INFINITY), below);
+    I::new(NAN).or(any(terms.map(is_nan)) | (above & below), infinite.or(above | below, finite))
+}
+
 /// Returns n / d of whole numbers: n with at most 16 bits, d from 1 to 2^30.
 pub fn quotient<I: Integer>(n: I, d: I) -> I {
     let above = n.magnitude().up(I::new(QUOTIENT_BITS));
@@ -112,6 +124,7 @@ mod tests {
 
     use super::*;
     use crate::random::Random;
+    use crate::texture::dot::Number as Dot;
 
     /// Numbers at which rounding, exponents or special values change, and any.
     fn pattern(random: &mut Random) -> u32 {
@@ -168,6 +181,20 @@ mod tests {
                 let found = product(x.to_bits().into(), y.to_bits().into());
                 assert!(same(found, x * y), "{x:e} * {y:e}: {found:08x}");
             }
+        }
+    }
+
+    /// Sums of three numbers of any sizes, and of such as nearly cancel, are those of doubles.
+    #[test]
+    fn aligned_sums_are_those_of_doubles() {
+        let mut random = Random::seeded(4);
+        for round in 0..400_000 {
+            let [a, b] = [pattern(&mut random), pattern(&mut random)];
+            let near = (a ^ (random.bits() as u32 & 0x8000_0003)).wrapping_sub((random.below(30) as u32) << 23);
+            let third = if round % 2 == 0 { near } else { pattern(&mut random) };
+            let wanted = <f32 as Dot>::sum([a, b, third].map(f32::from_bits));
+            let found = aligned_sum([a, b, third].map(i64::from));
+            assert!(same(found, wanted), "{a:08x} + {b:08x} + {third:08x}: {found:08x}, not {wanted:e}");
         }
     }
 

@@ -49,7 +49,7 @@ impl Unit for DotProduct {
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         let color = dot::remap(named(inputs[0]), bytes(&inputs[1..]));
         let products = dot::products([5, 6, 7].map(|n| float(inputs[n])), color);
-        put(results, products.into_iter().chain([dot::sum(products)]).map(f32::to_bits));
+        put(results, products.into_iter().chain([dot::Number::sum(products)]).map(f32::to_bits));
     }
 }
 

@@ -169,12 +169,6 @@ pub(crate) fn smaller<T: Copy + PartialOrd>(a: T, b: T) -> T {
     if a < b { a } else { b }
 }
 
-/// Rounds to the nearest integer in single precision, as a float.
-#[inline(always)]
-pub(crate) fn whole_32(q: f32) -> f32 {
-    (q + MAGIC_32) - MAGIC_32
-}
-
 /// Converts a whole number below 2^31.
 #[inline(always)]
 pub(crate) fn nearest(q: f64) -> i32 {
@@ -210,20 +204,9 @@ pub(crate) fn floor_of_sum(a: f64, b: f64) -> f64 {
     if (floor == sum) & (lost < 0.0) { floor - 1.0 } else { floor }
 }
 
-/// Returns the floor of the quotient of two numbers of at most 27 bits, of which `by` is not 0. It is exact below 2^52.
-#[inline(always)]
-pub(crate) fn floor_of_quotient(n: f64, by: f64) -> f64 {
-    let near = (n / by).floor();
-    // Both products are exact, and so are the differences, because they are small multiples of the last bit of `by`.
-    let high = f64::from_bits(near.to_bits() & !0 << 27);
-    let rest = (n - high * by) - (near - high) * by;
-    if (rest < 0.0) != (by < 0.0) && rest != 0.0 { near - 1.0 } else { near }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Random;
 
     /// Every number of pixels, by no more than a part too many.
     #[test]
@@ -231,31 +214,6 @@ mod tests {
         for used in 0..=BLOCK {
             let computed = Lanes::first(used).count();
             assert!((used..used + PART).contains(&computed) && computed <= BLOCK, "{used}: {computed}");
-        }
-    }
-
-    /// Quotients of all sizes up to 2^52, many of them whole or hardly below a whole number.
-    #[test]
-    fn quotients_are_floors() {
-        let mut random = Random::seeded(27);
-        for round in 0..400_000 {
-            let by = ((random.bits() >> (37 + random.bits() % 26)) as i64).max(1);
-            let length = random.bits() % 27;
-            let (mantissa, up) = ((random.bits() >> (37 + length)) as i64, random.bits() % 40);
-            let mut n = mantissa << up;
-            if round % 2 == 0 {
-                // Hardly below or above a multiple.
-                let multiple = (random.bits() >> (40 + random.bits() % 20)) as i64;
-                n = multiple * by + (random.bits() % 3) as i64 - 1;
-                n = if n.unsigned_abs() < 1 << 27 { n } else { n & !0 << (64 - n.leading_zeros() - 27) };
-            }
-            let n = if random.bits().is_multiple_of(2) { n } else { -n };
-            if (n / by).unsigned_abs() >= 1 << 52 {
-                continue;
-            }
-            let wanted = |n: i64, by: i64| n.div_euclid(by);
-            assert_eq!(floor_of_quotient(n as f64, by as f64), wanted(n, by) as f64, "{n} / {by}");
-            assert_eq!(floor_of_quotient(n as f64, -by as f64), wanted(-n, by) as f64, "{n} / -{by}");
         }
     }
 

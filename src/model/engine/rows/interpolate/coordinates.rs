@@ -2,9 +2,9 @@
 #![allow(clippy::float_arithmetic, reason = "doubles hold every number exactly")]
 
 use super::depths::word;
-use super::{LaneWeights, quotient};
-use crate::engine::rows::lanes::{floor_of_quotient, larger, limited, nearest, smaller};
-use crate::engine::rows::sampling::facing::Facing;
+use super::{LaneWeights, quotient, ratio};
+use crate::engine::rows::lanes::{larger, limited, nearest, smaller};
+use crate::engine::rows::sampling::facing::{Facing, floors_on_face};
 use crate::engine::rows::sampling::place::{FARTHEST, Place};
 use crate::engine::rows::sampling::sampler::{Sampler, Third};
 use crate::raster::weights::Linear;
@@ -108,7 +108,7 @@ impl Coordinates {
                 let out = &mut place.references[lanes.clone()];
                 match self.kind {
                     Kind::Ratio => weights
-                        .each_quotient(&self.r, &self.numbers[2], out, |r, q| limited(quotient(scale * r, q)) as u32),
+                        .each_quotient(&self.r, &self.numbers[2], out, |r, q| limited(scale * ratio(r, q)) as u32),
                     _ => weights.each(&self.r, out, |r| limited(scale * r) as u32),
                 }
                 let (layers, images) = (&mut place.references[lanes.clone()], &mut place.images[lanes]);
@@ -157,8 +157,7 @@ impl Coordinates {
         for axis in 0..2 {
             let scale = 256.0 * f64::from(sampler.sides[axis]);
             let out = &mut place.at[axis][lanes.clone()];
-            // Numbers of 26 bits: the quotient is further from whole numbers up to the limit than doubles round.
-            let of = |s: f64, q: f64| limited(quotient(scale * s, q)) - bias;
+            let of = |s: f64, q: f64| limited(scale * ratio(s, q)) - bias;
             weights.each_quotient(&self.numbers[axis], &self.numbers[2], out, of);
         }
     }
@@ -185,8 +184,7 @@ impl Coordinates {
                 continue;
             }
             for n in 0..out.len() {
-                let (s, q) = (scale * from[n], q[n] + 0.0);
-                let floor = if q == 0.0 { quotient(s, q) } else { floor_of_quotient(s, q) };
+                let floor = (scale * ratio(from[n], q[n] + 0.0)).floor();
                 out[n] = smaller(larger(floor, -FARTHEST), FARTHEST);
             }
         }
@@ -203,11 +201,8 @@ fn on_faces(sampler: &Sampler, lanes: Range<usize>, place: &mut Place) {
     for n in 0..lanes.len() {
         let direction = [x[n], y[n], z[n]];
         let facing = Facing::new(direction);
-        let [s, t, m] = facing.components(direction);
         images[n] = nearest(facing.number()) as u32;
-        // The zero vector has the coordinates 0.
-        let (middle, by) = if m > 0.0 { (middle, m) } else { (0.0, 1.0) };
-        u[n] = limited(middle + (middle * s / by).floor()) - bias;
-        v[n] = limited(middle + (middle * t / by).floor()) - bias;
+        let [along, down] = floors_on_face(facing.components(direction), middle);
+        (u[n], v[n]) = (limited(along) - bias, limited(down) - bias);
     }
 }

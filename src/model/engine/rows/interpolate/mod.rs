@@ -11,7 +11,7 @@ pub(super) mod sprites;
 
 use super::geometry::weights::CHUNK;
 use super::lanes::{PerLane, larger};
-use crate::raster::weights::{Linear, Number};
+use crate::raster::weights::{self, Linear, Number};
 use std::ops::Range;
 
 /// The weights b_0 and b_2 of some lanes.
@@ -115,4 +115,12 @@ impl<'a> LaneWeights<'a> {
 #[inline(always)]
 fn quotient(n: f64, by: f64) -> f64 {
     if (n == 0.0) & (by == 0.0) { 0.0 } else { n / by }
+}
+
+/// TEX-15: returns s/q of a q that is not -0.
+#[inline(always)]
+fn ratio(s: f64, q: f64) -> f64 {
+    let is_infinite = q == 0.0;
+    let ratio = weights::quotient(s, (if is_infinite { 1.0 } else { q }).reciprocal::<false>());
+    if is_infinite { quotient(s, q) } else { ratio }
 }

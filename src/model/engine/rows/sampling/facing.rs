@@ -2,6 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "signs of components, and small whole numbers")]
 
 use crate::engine::rows::lanes::larger;
+use crate::raster::weights::{Number, quotient};
 use crate::texture::cube::Face;
 use std::ops::{Add, Neg};
 
@@ -45,4 +46,14 @@ impl Facing {
         let axis = if self.on_x { x } else { axis };
         axis + if self.is_negative { T::from(1.0) } else { T::from(0.0) }
     }
+}
+
+/// TEX-12: returns the floors of u and v on a face, from s, t and the major component of a direction. The middle of the face has the coordinates `middle`.
+/// They are 0 where the major component is not positive.
+#[inline(always)]
+pub(crate) fn floors_on_face([s, t, m]: [f64; 3], middle: f64) -> [f64; 2] {
+    let (middle, by) = if m > 0.0 { (middle, m) } else { (0.0, 1.0) };
+    let reciprocal = by.reciprocal::<true>();
+    // Numbers of 24 bits times a power of two.
+    [s, t].map(|minor| middle + (middle * quotient(minor, reciprocal)).floor())
 }

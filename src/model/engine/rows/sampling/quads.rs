@@ -5,16 +5,13 @@
 //! for each quad:  a level of detail, or the taps of a footprint
 //! for each lane:  what its quad has
 //! ```
-#![allow(
-    clippy::float_arithmetic,
-    reason = "whole numbers that doubles hold, and floors of quotients that are corrected"
-)]
+#![allow(clippy::float_arithmetic, reason = "whole numbers that doubles hold")]
 
-use super::facing::Facing;
+use super::facing::{Facing, floors_on_face};
 use super::place::{FARTHEST, Place};
 use super::sampler::Sampler;
 use crate::engine::rows::geometry::weights::Pixels;
-use crate::engine::rows::lanes::{PerLane, STEP, floor_of_quotient, larger};
+use crate::engine::rows::lanes::{PerLane, STEP, larger};
 use crate::raster::binary::Binary;
 use crate::raster::interpolate::face_coordinate;
 use crate::texture::coordinates::{face_of, on_face, quad_ratio};
@@ -57,7 +54,7 @@ pub(crate) struct Quads {
     open: PerLane<u64>,
 }
 
-/// Coordinates below this are exact as quotients of doubles.
+/// Coordinates below this are exact as doubles.
 const EXACT: f64 = (1_u64 << 50) as f64;
 
 impl Quads {
@@ -172,7 +169,7 @@ impl Quads {
     #[inline(always)]
     fn project(&mut self, side: f64, of_vector: bool, rounded: usize) {
         let Quads { at, directions, behind, far, .. } = self;
-        let scale = 32768.0 * side;
+        let middle = 32768.0 * side;
         let (behind, far) = (&mut behind[..rounded], &mut far[..rounded]);
         let [a, b, c] = directions[0].each_ref().map(|of| &of[..rounded]);
         for ([x, y, z], [u, v]) in directions.iter().zip(at) {
@@ -181,14 +178,12 @@ impl Quads {
             for n in 0..rounded {
                 let [s, t, m] = Facing::new([a[n], b[n], c[n]]).components([x[n], y[n], z[n]]);
                 let ahead = m > 0.0;
-                let by = if ahead { m } else { 1.0 };
                 behind[n] |= i32::from(!ahead);
-                let (along, down) = (floor_of_quotient(s * scale, by), floor_of_quotient(t * scale, by));
-                let is_far = larger(along.abs(), down.abs()) >= EXACT;
+                [u[n], v[n]] = floors_on_face([s, t, m], middle);
+                let is_far = larger(u[n].abs(), v[n].abs()) >= EXACT;
                 // What is not finite times 0 is no number.
                 let finite = x[n] * 0.0 + y[n] * 0.0 + z[n] * 0.0 == 0.0;
                 far[n] |= i32::from(is_far | of_vector & !finite);
-                (u[n], v[n]) = (scale + along, scale + down);
             }
         }
     }

@@ -1,9 +1,9 @@
-//! TSH-4, TSH-5 and TSH-7 on rows: the dot unit in the machine's single precision. Every operation is rounded on its own, in the order of
-//! [`crate::texture::dot`]. Since Rust never fuses operations by itself, each lane has the bits of the definition.
+//! TSH-4, TSH-5 and TSH-7 on rows: the dot unit, by the text of [`crate::texture::dot`]. Since Rust never fuses operations by itself, each lane has
+//! the bits of the definition.
 #![allow(clippy::float_arithmetic, reason = "the chip's dot unit is a float unit (TSH-4)")]
 
-use crate::engine::rows::lanes::{BLOCK, Lanes, nearest_32, whole_32};
-use crate::engine::rows::sampling::facing::Facing;
+use crate::engine::rows::lanes::{BLOCK, Lanes, nearest, nearest_32};
+use crate::engine::rows::sampling::facing::{Facing, floors_on_face};
 use crate::number::convert::factor;
 use crate::state::DotMapping;
 use crate::texture::dot;
@@ -163,12 +163,9 @@ pub(crate) fn is_finite([x, y, z]: [f32; 3]) -> bool {
     (x.abs() <= f32::MAX) & (y.abs() <= f32::MAX) & (z.abs() <= f32::MAX)
 }
 
-/// TEX-12 and TEX-13 of vectors: writes the face, and u and v on it as floors in 1/256 texel less `bias`.
-///
-/// With the major component m, K = 128 `size`, which is a power of two, and n the integer nearest to K s / m, computed roughly, the floor
-/// is K + n, or one less if s is [below](is_below) m n / K. The argument after them is scratch space.
+/// TEX-12 and TEX-13 of vectors: writes the face, and u and v on it as floors in 1/256 texel less `bias`. The third argument is scratch space.
 #[inline(always)]
-pub(crate) fn on_faces<const FMA: bool>(
+pub(crate) fn on_faces(
     lanes: Lanes,
     [x, y, z]: [&Floats; 3],
     (size, bias): (u32, i32),
@@ -177,7 +174,7 @@ pub(crate) fn on_faces<const FMA: bool>(
     v: &mut [i32; BLOCK],
     faces: &mut [u32; BLOCK],
 ) {
-    let k = (128 * size) as f32;
+    let middle = 128.0 * f64::from(size);
     for n in 0..lanes.count() {
         let direction = [x[n], y[n], z[n]];
         let finite = is_finite(direction);
@@ -187,28 +184,13 @@ pub(crate) fn on_faces<const FMA: bool>(
         let kept = if finite { u32::MAX } else { 0 };
         let kept = |v: f32| f32::from_bits(v.to_bits() & kept);
         faces[n] = nearest_32(kept(facing.number())) as u32;
-        let scale = if m < TINY { 1.0 / TINY } else { 1.0 };
-        (along[n], down[n], majors[n]) = (kept(s) * scale, kept(t) * scale, kept(m) * scale);
+        (along[n], down[n], majors[n]) = (kept(s), kept(t), kept(m));
     }
     for n in 0..lanes.count() {
-        let (s, t, m) = (along[n], down[n], majors[n]);
-        // The zero vector has the coordinates 0.
-        let center = if m > 0.0 { k } else { 0.0 };
-        let r = center / (if m > 0.0 { m } else { 1.0 });
-        let (near_u, near_v) = (whole_32(s * r), whole_32(t * r));
-        let below = |s: f32, near: f32| if is_below::<FMA>(s, m, near * (1.0 / k)) { 1.0 } else { 0.0 };
-        u[n] = nearest_32(near_u + center - below(s, near_u)) - bias;
-        v[n] = nearest_32(near_v + center - below(t, near_v)) - bias;
+        let [s, t, m] = [along[n], down[n], majors[n]].map(f64::from);
+        let [along, down] = floors_on_face([s, t, m], middle);
+        (u[n], v[n]) = (nearest(along) - bias, nearest(down) - bias);
     }
-}
-
-/// Vectors with smaller components are scaled by its reciprocal, so that no difference in [`is_below`] underflows.
-const TINY: f32 = f32::from_bits((127 - 100) << 23);
-
-/// Returns whether s < m f, exactly: the fused difference has the right sign, and the product of doubles is exact.
-#[inline(always)]
-fn is_below<const FMA: bool>(s: f32, m: f32, f: f32) -> bool {
-    if FMA { f.mul_add(m, -s) > 0.0 } else { f64::from(s) < f64::from(f) * f64::from(m) }
 }
 
 #[cfg(test)]
@@ -272,11 +254,7 @@ mod tests {
             let (size, bias) = (1_u32 << (round % 13), [0, 128][round % 2]);
             let (mut u, mut v, mut faces) = ([0; BLOCK], [0; BLOCK], [0; BLOCK]);
             let (all, of, at) = (Lanes::default(), vector.each_ref(), (size, bias));
-            if round % 4 < 2 {
-                on_faces::<true>(all, of, at, scratch.each_mut(), &mut u, &mut v, &mut faces);
-            } else {
-                on_faces::<false>(all, of, at, scratch.each_mut(), &mut u, &mut v, &mut faces);
-            }
+            on_faces(all, of, at, scratch.each_mut(), &mut u, &mut v, &mut faces);
             for n in 0..BLOCK {
                 let bits = |axis: usize| i64::from(vector[axis][n].to_bits());
                 let direction = shader::direction([bits(0), bits(1), bits(2)]);

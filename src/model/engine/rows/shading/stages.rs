@@ -107,7 +107,7 @@ impl Stages<'_> {
                 }
                 operation => {
                     let Some(at) = stage.sampler else { continue };
-                    self.depend::<FMA>((shader, index), at, operation, &mut dotted);
+                    self.depend((shader, index), at, operation, &mut dotted);
                     self.sample(at);
                     let red = compiled.textures[stage.state.previous][0];
                     if let (Some(factors), Some(red)) = (stage.luminance.first_chunk::<512>(), red) {
@@ -136,7 +136,7 @@ impl Stages<'_> {
 
     /// Computes where a stage samples that depends on an earlier one.
     #[inline(always)]
-    fn depend<const FMA: bool>(
+    fn depend(
         &mut self,
         (shader, index): (&Shader, usize),
         at: usize,
@@ -182,7 +182,7 @@ impl Stages<'_> {
                 let Some((vector, scratch)) = self.workshop.vector(lanes, stage.eye) else { return };
                 let Place { at: uv, images, fine, direction, .. } = &mut self.places[at];
                 let ([u, v], faces) = (uv.each_mut().map(PerLane::block_mut), images.block_mut());
-                dot::on_faces::<FMA>(lanes, vector, (sampler.sides[0], sampler.bias()), scratch, u, v, faces);
+                dot::on_faces(lanes, vector, (sampler.sides[0], sampler.bias()), scratch, u, v, faces);
                 if sampler.takes_quads() {
                     for (from, to) in uv.iter().zip(fine) {
                         for n in 0..lanes.count() {
