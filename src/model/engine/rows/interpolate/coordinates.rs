@@ -2,7 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "doubles hold every number exactly")]
 
 use super::depths::word;
-use super::{LaneWeights, quotient, ratio};
+use super::{LaneWeights, quotient, ratio, reciprocal};
 use crate::engine::rows::lanes::{larger, limited, nearest, smaller};
 use crate::engine::rows::sampling::facing::{Facing, floors_on_face};
 use crate::engine::rows::sampling::place::{FARTHEST, Place};
@@ -107,8 +107,9 @@ impl Coordinates {
                 // The lanes of another use, before the axis limits them.
                 let out = &mut place.references[lanes.clone()];
                 match self.kind {
-                    Kind::Ratio => weights
-                        .each_quotient(&self.r, &self.numbers[2], out, |r, q| limited(scale * ratio(r, q)) as u32),
+                    Kind::Ratio => {
+                        weights.each_ratio([&self.r], &self.numbers[2], [out], |_, ratio| limited(scale * ratio) as u32)
+                    }
                     _ => weights.each(&self.r, out, |r| limited(scale * r) as u32),
                 }
                 let (layers, images) = (&mut place.references[lanes.clone()], &mut place.images[lanes]);
@@ -154,12 +155,10 @@ impl Coordinates {
     #[inline(always)]
     fn divided(&self, sampler: &Sampler, weights: LaneWeights<'_>, lanes: Range<usize>, place: &mut Place) {
         let bias = sampler.bias();
-        for axis in 0..2 {
-            let scale = 256.0 * f64::from(sampler.sides[axis]);
-            let out = &mut place.at[axis][lanes.clone()];
-            let of = |s: f64, q: f64| limited(scale * ratio(s, q)) - bias;
-            weights.each_quotient(&self.numbers[axis], &self.numbers[2], out, of);
-        }
+        let scales = sampler.sides.map(|side| 256.0 * f64::from(side));
+        let [s, t, q] = &self.numbers;
+        let outs = place.at.each_mut().map(|at| &mut at[lanes.clone()]);
+        weights.each_ratio([s, t], q, outs, |axis, ratio| limited(scales[axis] * ratio) - bias);
     }
 
     /// Computes s, t and q, or a direction.
@@ -173,20 +172,20 @@ impl Coordinates {
     /// Computes the coordinates of lanes in 1/65536 texel from s, t and q.
     #[inline(always)]
     fn finely(&self, sampler: &Sampler, lanes: Range<usize>, place: &mut Place) {
-        let Place { fine, direction: [s, t, q], .. } = place;
-        for (axis, from) in [s, t].into_iter().enumerate() {
-            let (out, from, q) = (&mut fine[axis][lanes.clone()], &from[lanes.clone()], &q[lanes.clone()]);
-            let scale = 65536.0 * f64::from(sampler.sides[axis]);
-            if self.kind == Kind::Plane {
-                for n in 0..out.len() {
-                    out[n] = (scale * from[n]).floor();
-                }
+        let Place { fine, direction, .. } = place;
+        let [s, t, q] = direction.each_ref().map(|number| &number[lanes.clone()]);
+        let [u, v] = fine.each_mut().map(|out| &mut out[lanes.clone()]);
+        let [along, down] = sampler.sides.map(|side| 65536.0 * f64::from(side));
+        let is_plane = self.kind == Kind::Plane;
+        for n in 0..lanes.len() {
+            if is_plane {
+                (u[n], v[n]) = ((along * s[n]).floor(), (down * t[n]).floor());
                 continue;
             }
-            for n in 0..out.len() {
-                let floor = (scale * ratio(from[n], q[n] + 0.0)).floor();
-                out[n] = smaller(larger(floor, -FARTHEST), FARTHEST);
-            }
+            let q = q[n] + 0.0;
+            let by = reciprocal(q);
+            let floor = |scale: f64, s: f64| smaller(larger((scale * ratio(s, q, by)).floor(), -FARTHEST), FARTHEST);
+            (u[n], v[n]) = (floor(along, s[n]), floor(down, t[n]));
         }
     }
 }

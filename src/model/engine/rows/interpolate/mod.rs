@@ -109,6 +109,34 @@ impl<'a> LaneWeights<'a> {
             }
         }
     }
+
+    /// TEX-15: writes what a function makes of the ratios of numbers to another in each lane, given the number's place among them.
+    #[inline(always)]
+    fn each_ratio<T, const N: usize>(
+        self,
+        numbers: [&Linear<f64>; N],
+        by: &Linear<f64>,
+        outs: [&mut [T]; N],
+        of: impl Fn(usize, f64) -> T,
+    ) {
+        let mut chunks = [[0.0; CHUNK]; 3];
+        for first in (0..self.first.len()).step_by(CHUNK) {
+            let part = first..(first + CHUNK).min(self.first.len());
+            let [above, below, reciprocals] = chunks.each_mut().map(|chunk| &mut chunk[..part.len()]);
+            self.part(part.clone()).number(by, below);
+            for n in 0..below.len() {
+                below[n] += 0.0;
+                reciprocals[n] = reciprocal(below[n]);
+            }
+            for k in 0..N {
+                self.part(part.clone()).number(numbers[k], above);
+                let out = &mut outs[k][part.clone()];
+                for n in 0..out.len() {
+                    out[n] = of(k, ratio(above[n], below[n], reciprocals[n]));
+                }
+            }
+        }
+    }
 }
 
 /// Returns a quotient, whose divisor is not -0.
@@ -117,10 +145,15 @@ fn quotient(n: f64, by: f64) -> f64 {
     if (n == 0.0) & (by == 0.0) { 0.0 } else { n / by }
 }
 
-/// TEX-15: returns s/q of a q that is not -0.
+/// Returns the reciprocal of a q, for [`ratio`].
 #[inline(always)]
-fn ratio(s: f64, q: f64) -> f64 {
-    let is_infinite = q == 0.0;
-    let ratio = weights::quotient(s, (if is_infinite { 1.0 } else { q }).reciprocal::<false>());
-    if is_infinite { quotient(s, q) } else { ratio }
+fn reciprocal(q: f64) -> f64 {
+    (if q == 0.0 { 1.0 } else { q }).reciprocal::<false>()
+}
+
+/// TEX-15: returns s/q of a q that is not -0, and of its [`reciprocal`].
+#[inline(always)]
+fn ratio(s: f64, q: f64, reciprocal: f64) -> f64 {
+    let ratio = weights::quotient(s, reciprocal);
+    if q == 0.0 { quotient(s, q) } else { ratio }
 }
