@@ -156,6 +156,7 @@ fn wider_random_scenes_agree() {
             need("reference", ShadowReference::NAMES);
             need("layer", AddressMode::NAMES);
             need("layer", &["inside"]);
+            need("other kind", &["Cube", "ThreeDimensional"]);
             need("taps", &["1", "2", "4", "6", "8"]);
             need("cylinder", &["moved", "stays"]);
             need("texels", &["longer than pixels", "shorter than pixels"]);
@@ -222,8 +223,9 @@ proptest! {
 }
 
 /// The names of all operations of the texture shader.
-const OPERATIONS: &str = "None Sample PassThrough CullFragment BumpEnvironment DependentAlphaRed DependentGreenBlue \
-    DotProduct DotProduct2D DotProductCube DotReflectDiffuse DotReflectSpecular DotReflectConstantEye";
+const OPERATIONS: &str = "None Sample Sample2D SampleCube PassThrough CullFragment BumpEnvironment DependentAlphaRed \
+    DependentGreenBlue DotProduct DotProduct2D DotProduct3D DotProductCube DotReflectDiffuse DotReflectSpecular \
+    DotReflectConstantEye";
 
 /// A number that is a multiple of 2^-20 from -2 to 2, which may be few bits long.
 fn small(random: &mut Random) -> f32 {

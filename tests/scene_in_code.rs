@@ -222,8 +222,8 @@ const CASES: &[Case] = &[
     ("DotProduct2D cannot stand at stage 0", |s| {
         s.draws[0].texture_shader[0].operation = ShaderOperation::DotProduct2D;
     }),
-    ("DotProductCube does not sample a texture of kind TwoDimensional", |s| {
-        s.draws[0].texture_shader[0].operation = ShaderOperation::DotProductCube;
+    ("Sample2D does not sample a texture of kind TwoDimensional", |s| {
+        s.draws[0].texture_shader[0].operation = ShaderOperation::Sample2D;
     }),
     ("a number of BumpEnvironment at stage 1 is not finite", |s| {
         let matrix = [0.0, f32::NAN, 0.0, 0.0];
@@ -483,7 +483,10 @@ fn hurt_draw(draw: &mut Draw, r: &mut Random) {
         15 => draw.texture_shader[k].previous = r.index(),
         16 => {
             let [a, b, c, d] = std::array::from_fn(|_| r.float());
-            draw.texture_shader[k].operation = match r.below(8) {
+            draw.texture_shader[k].operation = match r.below(11) {
+                8 => ShaderOperation::Sample2D,
+                9 => ShaderOperation::SampleCube,
+                10 => ShaderOperation::DotProduct3D,
                 0 => ShaderOperation::Sample,
                 1 => ShaderOperation::DotProduct,
                 2 => ShaderOperation::DotProduct2D,

@@ -273,7 +273,7 @@ const SHADER_OPERATIONS: [(u32, &str, &str); 19] = [
     (0x0a, "DotProductDepth", "Unbound"),
     (0x0b, "DotReflectDiffuse", "\"cube\""),
     (0x0c, "DotReflectSpecular", "\"cube\""),
-    (0x0d, "DotProduct3D", "Unbound"),
+    (0x0d, "DotProduct3D", "\"flat\""),
     (0x0e, "DotProductCube", "\"cube\""),
     (0x0f, "DependentAlphaRed", "\"flat\""),
     (0x10, "DependentGreenBlue", "\"flat\""),

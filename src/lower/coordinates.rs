@@ -1,11 +1,13 @@
 //! The coordinates at which a unit samples.
 
 use ninebit::number::{Integer, Register as _};
+use ninebit::raster::binary::Binary;
 use ninebit::raster::interpolate::FARTHEST;
 use ninebit::raster::stroke::Figure;
 use ninebit::state::*;
 use ninebit::texture::anisotropy::{MAX_PAIRS, Pairs, pairs};
 use ninebit::texture::cube::{Face, major_axis};
+use ninebit::texture::other_kind::{ZERO_VECTOR, end_of_face, on_face, on_plane};
 use ninebit::texture::planned::PlannedUnit;
 use ninebit::texture::{lod, shader};
 
@@ -43,7 +45,7 @@ impl<'a> Unit<'a, '_, '_> {
         self.interpolator.coordinate(self.unit.index, n, sample)
     }
 
-    /// Returns the direction into a cube map.
+    /// Returns the direction that a unit samples in.
     pub(crate) fn direction(&self, place: Place<'a>, sample: &Sample<'a>) -> Option<[Interpolant<'a>; 3]> {
         match place {
             Place::Own(Projection::Direction) => Some([0, 1, 2].map(|n| self.component(sample, n))),
@@ -62,7 +64,7 @@ impl<'a> Unit<'a, '_, '_> {
         Facing { is_x, is_y, negative: major.is_negative() }
     }
 
-    /// TEX-12: returns sc, tc and |ma| of a direction on a face.
+    /// TEX-12, TEX-20: returns sc, tc and |ma| of a direction on a face, tc negated for an image of two dimensions.
     fn on_face(&self, direction: [Interpolant<'a>; 3], facing: Facing<'a>) -> OnFace<'a> {
         let Facing { is_x, is_y, negative } = facing;
         let code = self.interpolator.code;
@@ -82,7 +84,7 @@ impl<'a> Unit<'a, '_, '_> {
             let ((x, of_x), (y, of_y), (z, of_z)) = (of(0), of(1), of(2));
             let number = x.or(is_x, y.or(is_y, z));
             let sign = of_x.or(is_x, of_y.or(is_y, of_z));
-            let is_negated = !sign.is_zero();
+            let is_negated = !sign.is_zero() ^ Truth::Known(n == 1 && self.unit.kind != TextureKind::Cube);
             let number = number.negated().or(is_negated, number);
             Interpolant::from_line(
                 code,
@@ -117,12 +119,21 @@ impl<'a> Unit<'a, '_, '_> {
         if let (Some(facing), Some(direction)) = (facing, self.direction(place, sample)) {
             let [s, t, m] = self.on_face(direction, facing);
             let m = m.operand(code);
-            let of = |n: Interpolant<'a>, size: Number<'a>| {
-                counted(code, Helper::Face, &[divided(code, n, m), m, size.operand()])
-            };
-            return named([of(s, sides[0]), of(t, sides[1])]);
+            let [s, t] = [s, t].map(|n| divided(code, n, m));
+            let of = |q: Operand, size: Number<'a>| counted(code, Helper::Face, &[q, m, size.operand()]);
+            if self.unit.kind == TextureKind::Cube {
+                return named([of(s, sides[0]), of(t, sides[1])]);
+            }
+            let of_faces = [0, 1].map(|axis: usize| of([s, t][axis], sides[axis] + sides[axis]));
+            let is_zero = self.is_zero(direction);
+            code.by("TEX-20");
+            return named([0, 1].map(|axis: usize| {
+                let at = on_plane(of_faces[axis], sides[axis], 8);
+                Number::Constant(ZERO_VECTOR[axis]).or(is_zero, at)
+            }));
         }
-        let at = |n: usize| self.component(sample, n);
+        let is_on_face = self.unit.is_on_face();
+        let at = |n: usize| self.turned(self.component(sample, n), is_on_face && n == 1);
         let own = |n: usize| match place {
             Place::Own(Projection::Ratio) => self.ratio(at(n), self.component(sample, 3), sides[n]),
             Place::Moved(offsets) => self.moved(at(n), offsets[n], sides[n].operand(), (8, 1 << 24)),
@@ -131,11 +142,39 @@ impl<'a> Unit<'a, '_, '_> {
                 shader::dependent(bytes[n], sides[n], scale)
             }
             Place::Floats(floats) => counted(code, Helper::Float, &[floats[n].operand(), sides[n].operand()]),
+            Place::Ends(dots) => self.end(n, dots[n], sides[n], 8),
             Place::Own(_) | Place::Vector(_) => self.floored(at(n), sides[n]),
         };
+        if is_on_face {
+            let uv = [0, 1].map(own);
+            code.by("TEX-20");
+            return named(uv.map(|u| on_face(u, sides[0], 8)));
+        }
         let pixel = [Input::X, Input::Y].map(|input| self.interpolator.input(input));
         let sides = sides.map(Number::operand);
         named([0, 1].map(|n: usize| self.of_figure((n, pixel[n]), (sides[n], 8), || own(n))))
+    }
+
+    /// Returns a number, or its negative.
+    fn turned(&self, number: Interpolant<'a>, is_turned: bool) -> Interpolant<'a> {
+        if !is_turned {
+            return number;
+        }
+        let code = self.interpolator.code;
+        let Binary { mantissa, exponent } = number.parts(code, (-(1 << 26), 1 << 26)).negated();
+        Interpolant::from_line(code, code.make(Operation::Binary(mantissa.operand(), exponent.operand())))
+    }
+
+    /// Returns whether a direction is the zero vector.
+    fn is_zero(&self, direction: [Interpolant<'a>; 3]) -> Truth<'a> {
+        let is_zero = direction.map(|n| n.parts(self.interpolator.code, (-(1 << 26), 1 << 26)).mantissa.is_zero());
+        is_zero[0] & is_zero[1] & is_zero[2]
+    }
+
+    /// TEX-20: returns the end of a face that a dot product, a pattern of binary32, chooses along an axis, in 2^-`power` texel.
+    fn end(&self, axis: usize, dot: Number<'a>, side: Number<'a>, power: i64) -> Number<'a> {
+        self.interpolator.code.by("TEX-20");
+        end_of_face(axis, dot, side, power)
     }
 
     /// Returns a coordinate in a point at a column or a row, or what else a figure has, in 2^-`power` texel.
@@ -203,7 +242,7 @@ impl<'a> Unit<'a, '_, '_> {
         facing: Option<Facing<'a>>,
     ) -> ([Number<'a>; 2], Truth<'a>) {
         let (code, sample, place) = (self.interpolator.code, self.sample, self.place);
-        let sides = sides.map(Number::operand);
+        let (lengths, sides) = (sides, sides.map(Number::operand));
         let is_positive = |n: Interpolant<'a>| Number::ZERO.is_below(n.parts(code, crate::code::MANTISSA).mantissa);
         code.by("TEX-11");
         let mut behind = !is_positive(sample.sum);
@@ -211,14 +250,26 @@ impl<'a> Unit<'a, '_, '_> {
             let [s, t, m] = self.on_face(direction, facing);
             behind = behind | !is_positive(m);
             let m = m.operand(code);
-            let of = |n: usize| counted(code, Helper::FarFace, &[divided(code, [s, t][n], m), m, sides[n]]);
-            return ([0, 1].map(of), behind);
+            let at = [s, t].map(|n| divided(code, n, m));
+            let of = |n: usize, side: Operand| counted(code, Helper::FarFace, &[at[n], m, side]);
+            if self.unit.kind == TextureKind::Cube {
+                return ([0, 1].map(|n: usize| of(n, sides[n])), behind);
+            }
+            return (
+                [0, 1].map(|n: usize| {
+                    let of_face = of(n, (lengths[n] + lengths[n]).operand());
+                    code.by("TEX-20");
+                    on_plane(of_face, lengths[n], 16)
+                }),
+                behind,
+            );
         }
         let q = (matches!(place, Place::Own(Projection::Ratio))).then(|| self.component(sample, 3));
         if let Some(q) = q {
             behind = behind | (!is_positive(q) & !self.is_point);
         }
-        let at = |n: usize| self.component(sample, n);
+        let is_on_face = self.unit.is_on_face();
+        let at = |n: usize| self.turned(self.component(sample, n), is_on_face && n == 1);
         let own = |n: usize| match (place, q) {
             (_, Some(q)) => far_floored(code, divided(code, at(n), q.operand(code)), sides[n]),
             (Place::Moved(offsets), _) => self.moved(at(n), offsets[n], sides[n], (16, FARTHEST)),
@@ -227,8 +278,14 @@ impl<'a> Unit<'a, '_, '_> {
                 shader::dependent(bytes[n], Number::new(code, sides[n]).up(Number::Constant(8)), scale)
             }
             (Place::Floats(floats), _) => counted(code, Helper::FarFloat, &[floats[n].operand(), sides[n]]),
+            (Place::Ends(dots), _) => self.end(n, dots[n], lengths[n], 16),
             (Place::Own(_) | Place::Vector(_), _) => far_floored(code, at(n).operand(code), sides[n]),
         };
+        if is_on_face {
+            let uv = [0, 1].map(own);
+            code.by("TEX-20");
+            return (uv.map(|u| on_face(u, lengths[0], 16)), behind);
+        }
         ([0, 1].map(|n: usize| self.of_figure((n, pixel[n]), (sides[n], 16), || own(n))), behind)
     }
 }

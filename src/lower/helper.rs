@@ -97,8 +97,8 @@ const fn number(low: i64, high: i64) -> (Kind, Range) {
     (Kind::Number, (low, high))
 }
 
-/// Largest size of an image, and the one of coordinates in texels.
-const SIZE: (Kind, Range) = number(1, 4096);
+/// Twice the largest size of an image (TEX-20), and the one of coordinates in texels.
+const SIZE: (Kind, Range) = number(1, 8192);
 
 /// The bits of a binary32 number.
 const BITS: (Kind, Range) = number(0, u32::MAX as i64);

@@ -26,14 +26,14 @@ pub(crate) enum Projection {
     Plane,
     /// s/q and t/q.
     Ratio,
-    /// A direction into a cube map.
+    /// A direction.
     Direction,
 }
 
 impl Projection {
     /// Returns the projection of a unit, which all triangles of a draw can take.
     pub(crate) fn new(whole: &Whole<'_, '_>, unit: &PlannedUnit) -> Projection {
-        if unit.kind == TextureKind::Cube {
+        if unit.takes_direction() {
             return Projection::Direction;
         }
         let (assembly, set) = (&whole.planned.assembly, unit.stage.coordinate_set);
@@ -53,6 +53,8 @@ pub(crate) enum Place<'a> {
     Bytes([Number<'a>; 2], DependentScale),
     /// Two results of the dot unit, patterns of binary32 (TSH-4).
     Floats([Number<'a>; 2]),
+    /// Two of them whose signs choose ends of a face (TEX-20).
+    Ends([Number<'a>; 2]),
     /// A direction that the dot unit computed (TSH-4, TSH-5).
     Vector([Interpolant<'a>; 3]),
 }
@@ -188,7 +190,7 @@ impl<'a, 's, 'w> Unit<'a, 's, 'w> {
     fn image(&self, facing: Option<Facing<'a>>) -> (Number<'a>, Truth<'a>) {
         let (_, words) = self.unit.texel_layout();
         let words = Number::Constant(words as i64);
-        if let Some(facing) = facing {
+        if let Some(facing) = facing.filter(|_| self.unit.kind == TextureKind::Cube) {
             return (facing.number() * words, Truth::Known(false));
         }
         if self.unit.kind != TextureKind::ThreeDimensional {

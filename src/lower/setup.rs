@@ -10,7 +10,7 @@ use ninebit::raster::fog;
 use ninebit::raster::setup::{EdgeFunctions, edge_function, is_inside};
 use ninebit::raster::stroke::Figure;
 use ninebit::raster::weights::{Linear, ratios};
-use ninebit::state::{CompareFunction, Profile, ShaderOperation};
+use ninebit::state::{CompareFunction, Profile};
 use ninebit::texture::coordinates::wrapped;
 
 use crate::binary::{Interpolant, call};
@@ -114,9 +114,7 @@ impl Attribute {
                 let stage = context.draw.shader.as_ref().map(|shader| shader.stages[n].state);
                 let set = match (unit, stage) {
                     // Only what a unit samples at its own coordinates is wrapped.
-                    (_, Some(stage)) if stage.operation != ShaderOperation::Sample => {
-                        vertices.coordinates(stage.coordinate_set)
-                    }
+                    (_, Some(stage)) if !stage.operation.samples_own() => vertices.coordinates(stage.coordinate_set),
                     (Some(unit), _) => wrapped(unit, vertices.coordinates(unit.stage.coordinate_set)),
                     (None, _) => return 0,
                 };

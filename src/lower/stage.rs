@@ -127,7 +127,7 @@ impl<'a> Stages<'a, '_, '_> {
                 (UNBOUND, self.whole.drops(index, drops_not_negative.map(Truth::Known), sample))
             }
             (ShaderOperation::DotProduct, _) => ([Number::ZERO; 4], Truth::Known(false)),
-            (ShaderOperation::Sample, Some(unit)) => {
+            (operation, Some(unit)) if operation.samples_own() => {
                 let projection = Projection::new(self.whole, unit);
                 Unit::new(self.whole, unit, sample, self.quad, &|_| Place::Own(projection)).register()
             }
@@ -185,6 +185,12 @@ impl<'a> Stages<'a, '_, '_> {
         match operation {
             ShaderOperation::DotProduct2D => {
                 Place::Floats([index - 1, index].map(|index| self.dot(index, sample, state).0))
+            }
+            ShaderOperation::DotProduct3D => {
+                let dots = [index - 2, index - 1].map(|index| self.dot(index, sample, state).0);
+                let unit = self.shader.stages[index].unit.map(|unit| &self.whole.planned.units[unit]);
+                let has_faces = unit.is_some_and(|unit| unit.kind == TextureKind::Cube);
+                if has_faces { Place::Ends(dots) } else { Place::Floats(dots) }
             }
             ShaderOperation::DotReflectSpecular | ShaderOperation::DotReflectConstantEye { .. } => {
                 let normal = self.normal(sample, state);

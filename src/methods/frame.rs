@@ -342,12 +342,14 @@ impl Builder {
                 if draw.textures[index].is_none() {
                     stage.operation = ShaderOperation::None;
                 }
-                let kinds = stage.operation.kinds();
-                if let Some(unit) = &draw.textures[index]
-                    && !kinds.contains(&self.textures[unit.texture].kind)
-                {
-                    view.note(Gap::NotModelled(format!("a texture of another kind than unit {index} samples")));
-                    (draw.textures[index], stage.operation) = (None, ShaderOperation::None);
+                if let Some(unit) = &draw.textures[index] {
+                    let kind = self.textures[unit.texture].kind;
+                    stage.operation = shader::of_kind(view, index, stage.operation, kind);
+                    if !stage.operation.samples() || !stage.operation.kinds().contains(&kind) {
+                        let what = format!("a texture of kind {} at unit {index}", kind.name());
+                        view.note(Gap::NotModelled(format!("{what}, which samples another")));
+                        (draw.textures[index], stage.operation) = (None, ShaderOperation::None);
+                    }
                 }
             }
             draw.texture_shader[index] = stage;

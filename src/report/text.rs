@@ -225,6 +225,18 @@ pub(super) fn expression(step: &Step) -> String {
         "quad_coordinate" => format!("floor(65536 * {} * {})", value(1), name(0)),
         "floor_ratio" => format!("floor(256 * {} * {} / {})", value(2), name(0), name(1)),
         "quad_ratio" => format!("floor(65536 * {} * {} / {})", value(2), name(0), name(1)),
+        "floor_on_plane_u" | "floor_on_plane_v" | "quad_on_plane_u" | "quad_on_plane_v" => {
+            let ((s, m), steps) = (on_face(step), if step.operation.starts_with("quad") { 65536 } else { 256 });
+            let sign = if step.operation.ends_with('v') { "-" } else { "" };
+            format!("floor({sign}{steps} * {} * {} / {})", value(4), decimal(s), decimal(m))
+        }
+        "floor_on_face_u" | "floor_on_face_v" | "quad_on_face_u" | "quad_on_face_v" => {
+            let steps = if step.operation.starts_with("quad") { 32768 } else { 128 };
+            let sign = if step.operation.ends_with('v') { '-' } else { '+' };
+            let (size, by) =
+                if step.inputs.len() == 2 { (value(1), String::new()) } else { (value(2), format!(" / {}", name(1))) };
+            format!("floor({steps} * {size} * (1 {sign} {}{by}))", name(0))
+        }
         "cube_face" => {
             let [x, y, z] = [0, 1, 2].map(|n| step.inputs.get(n).map_or(0.0, real));
             format!("largest of ({}, {}, {})", decimal(x), decimal(y), decimal(z))

@@ -47,6 +47,7 @@ pub const OPERATIONS: &[(&str, &str, u32, &[&str])] = &[
     ("filtered-channel", "four texels by two weights", 51, &[]),
     ("cube-direction", "three whole numbers", 76, &[]),
     ("cube-face", "three floats", 94, &[]),
+    ("other-kind", "three floats", 94, &[]),
     ("level-choice", "the lod: four distances", 133, &[]),
     (
         "level-choice",

@@ -135,20 +135,16 @@ pub(super) fn units(c: &mut Choices<'_>, given: &SceneParts<'_>, usable: &[usize
             stages[k] = ShaderStage { coordinate_set: set_of(&unit), ..ShaderStage::conventional(k, unit.is_some()) };
             return unit;
         };
-        let of_kind = |cube: bool| -> Vec<usize> {
-            usable.iter().copied().filter(|t| (given.textures[*t].kind == TextureKind::Cube) == cube).collect()
+        let fits = |kind: &TextureKind| match operation {
+            // Cube maps need a q of 0.
+            ShaderOperation::DotProduct3D => *kind == TextureKind::TwoDimensional,
+            _ => operation.samples() && operation.kinds().contains(kind),
         };
-        let fitting = match operation {
-            ShaderOperation::Sample => usable.to_vec(),
-            ShaderOperation::DotProductCube
-            | ShaderOperation::DotReflectDiffuse
-            | ShaderOperation::DotReflectSpecular
-            | ShaderOperation::DotReflectConstantEye { .. } => of_kind(true),
-            _ if operation.samples() => of_kind(false),
-            _ => Vec::new(),
-        };
+        let fitting: Vec<usize> = usable.iter().copied().filter(|t| fits(&given.textures[*t].kind)).collect();
         let unit = (!fitting.is_empty()).then(|| unit(&mut c, given, &fitting));
         let coordinate_set = match operation {
+            ShaderOperation::SampleCube => set_for(&|style| matches!(style, 12..=14)),
+            ShaderOperation::Sample2D => set_for(&|style| style < 12),
             ShaderOperation::Sample => set_of(&unit),
             _ if operation.is_dot() => set_for(&|style| style >= 12),
             _ => any_set,
@@ -165,12 +161,18 @@ fn operations(c: &mut Choices<'_>) -> [ShaderOperation; TEXTURE_UNITS] {
     use ShaderOperation::*;
     let first = free(c, true);
     let eye = DotReflectConstantEye { eye: std::array::from_fn(|_| c.between(-1.0, 1.0)) };
-    let last = c.pick(&[DotProductCube, DotReflectSpecular, eye]);
-    match c.below(6) {
+    let last = c.pick(&[DotProductCube, DotReflectSpecular, eye, DotProduct3D]);
+    match c.below(7) {
         0 | 1 => [first, free(c, false), free(c, false), free(c, false)],
         2 => [first, DotProduct, DotProduct2D, free(c, false)],
         3 => [first, free(c, false), DotProduct, DotProduct2D],
-        4 => [first, DotProduct, DotReflectDiffuse, if last == DotProductCube { eye } else { last }],
+        4 => [
+            first,
+            DotProduct,
+            DotReflectDiffuse,
+            if matches!(last, DotProductCube | DotProduct3D) { eye } else { last },
+        ],
+        5 => [first, DotProduct, DotProduct, c.pick(&[DotProduct3D, DotProductCube])],
         _ => [first, DotProduct, DotProduct, last],
     }
 }
@@ -180,7 +182,9 @@ fn free(c: &mut Choices<'_>, first: bool) -> ShaderOperation {
     use ShaderOperation::*;
     let mut c = c.part(12);
     match c.below(if first { 8 } else { 13 }) {
-        0..=4 => Sample,
+        0..=2 => Sample,
+        3 => Sample2D,
+        4 => SampleCube,
         5 => PassThrough,
         6 => None,
         7 => CullFragment { drops_not_negative: std::array::from_fn(|_| c.once_in(4)) },
@@ -220,6 +224,25 @@ fn repair(stages: &mut [ShaderStage; TEXTURE_UNITS], bound: &[Option<TextureUnit
         && matches!(stages[0].operation, None | CullFragment { .. })
     {
         stages[1].operation = Sample;
+    }
+}
+
+/// Makes a unit of a draw sample a texture of another kind than its stage (TEX-20). A dot product for volumes gets a cube map and q = 0.
+pub(super) fn other_kind(scene: &mut Scene, (draw, k): (usize, usize)) {
+    let Some(unit) = scene.draws[draw].textures[k] else { return };
+    let cube = scene.textures.iter().position(|texture| texture.kind == TextureKind::Cube);
+    let draw = &mut scene.draws[draw];
+    let stage = &mut draw.texture_shader[k];
+    stage.operation = match (stage.operation, scene.textures[unit.texture].kind) {
+        (ShaderOperation::Sample, TextureKind::TwoDimensional) => ShaderOperation::SampleCube,
+        (ShaderOperation::Sample, _) => ShaderOperation::Sample2D,
+        (ShaderOperation::DotProductCube | ShaderOperation::DotProduct3D, _) => ShaderOperation::DotProduct3D,
+        _ => return,
+    };
+    let set = stage.coordinate_set;
+    if let (ShaderOperation::DotProduct3D, Some(texture)) = (stage.operation, cube) {
+        draw.textures[k] = Some(TextureUnit { texture, palette: None, ..unit });
+        draw.vertices.update(|_, vertex| vertex.texture_coordinates[set][3] = 0.0);
     }
 }
 

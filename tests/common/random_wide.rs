@@ -201,7 +201,7 @@ fn color_keys(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     }
 }
 
-/// Makes units compare depths, read volumes, take several taps, or wrap cylindrically.
+/// Makes units compare depths, read volumes, take several taps, wrap cylindrically, or sample textures of another kind.
 #[allow(clippy::float_arithmetic, reason = "choosing coordinates")]
 fn samplings(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     let function = c.any();
@@ -225,7 +225,7 @@ fn samplings(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
                 let Some(unit) = &mut scene.draws[index].textures[k] else { return };
                 unit.cylindrical_wrap = [c.once_in(2), c.below(3) != 0];
             }),
-            _ => {}
+            _ => attempt(scene, |scene| texture::other_kind(scene, (index, k))),
         }
     }
 }
@@ -302,6 +302,9 @@ fn reads_layers(c: &mut Choices<'_>, scene: &mut Scene, (draw, k): (usize, usize
     draw.vertices.update(|n, vertex| {
         vertex.texture_coordinates[set][2] = from + (n % 4) as f32 * step;
     });
+    if c.once_in(3) {
+        draw.texture_shader[k].operation = ShaderOperation::Sample2D;
+    }
 }
 
 /// Changes the format in which words are read. For render targets the texels often have another size.

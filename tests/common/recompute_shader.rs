@@ -110,6 +110,19 @@ pub fn face_coordinate(inputs: &Inputs, u: bool) -> Number {
     if is_finite { weights::face_coordinate(inputs, u, 256) } else { Number::new(0, 256) }
 }
 
+/// TEX-20: returns the coordinate of a direction of the dot unit on a two-dimensional image.
+pub fn on_plane(inputs: &Inputs, u: bool) -> Number {
+    let is_finite = (0..3).all(|n| single(inputs, n).is_finite());
+    if is_finite { weights::on_plane(inputs, u, 256) } else { Number::new(if u { -1 << 24 } else { 1 << 24 }, 256) }
+}
+
+/// TEX-20: returns the end of a face that a sign chooses.
+pub fn end(inputs: &Inputs, u: bool) -> i128 {
+    let x = single(inputs, 0);
+    let is_last = if u { x < 0.0 } else { x > 0.0 };
+    if is_last { 256 * value(inputs, 1) } else { 0 }
+}
+
 /// Returns a x + b y exactly, as numerator and exponent.
 fn sum(terms: [(i128, f32); 2]) -> (i128, i32) {
     let terms = terms.map(|(factor, x)| {

@@ -252,6 +252,46 @@ pub fn face_coordinate(inputs: &Inputs, u: bool, per_one: i128) -> Number {
     Number::new(half + quotient(Exact { m: q.m * half, e: q.e }, Exact { m: 1, e: 0 }, 1 << 61), per_one)
 }
 
+/// TEX-20: returns floor(per_one size s / m), s negated for v, in the direction and on the face of the inputs.
+pub fn on_plane(inputs: &Inputs, u: bool, per_one: i128) -> Number {
+    let [x, y, z] = [0, 1, 2].map(|k| Exact::new(inputs[k].1));
+    let minus = |n: Exact| Exact { m: -n.m, ..n };
+    let (s, t, m) = match inputs[3].1.value {
+        0 => (minus(z), y, x),
+        1 => (z, y, minus(x)),
+        2 => (x, minus(z), y),
+        3 => (x, z, minus(y)),
+        4 => (x, y, z),
+        _ => (minus(x), y, minus(z)),
+    };
+    if m.m == 0 {
+        return Number::new(if u { -1 << 24 } else { 1 << 24 }, per_one);
+    }
+    let minor = if u { s } else { t };
+    let q = divided(minor, m);
+    Number::new(
+        quotient(Exact { m: q.m * inputs[4].1.value * per_one, e: q.e }, Exact { m: 1, e: 0 }, 1 << 61),
+        per_one,
+    )
+}
+
+/// TEX-20: returns floor(per_one size (1 + s / q) / 2), for v of 1 - t / q. Without a q it is 1.
+pub fn on_face(inputs: &Inputs, u: bool, per_one: i128) -> Number {
+    let ((_, size), numbers) =
+        inputs.split_last().map(|(last, rest)| (last.clone(), rest)).unwrap_or_else(|| panic!("no size"));
+    let half = size.value * per_one / 2;
+    let x = Exact::new(numbers[0].1);
+    let x = Exact { m: if u { x.m } else { -x.m }, e: x.e };
+    let limit = if per_one == 256 { 1 << 23 } else { 1 << 60 };
+    let on = |x: Exact| half + quotient(Exact { m: x.m * half, e: x.e }, Exact { m: 1, e: 0 }, limit);
+    let value = match numbers.get(1).map(|q| Exact::new(q.1)) {
+        None => on(x),
+        Some(q) if q.m == 0 => half + limit * x.m.signum(),
+        Some(q) => on(divided(x, q)),
+    };
+    Number::new(value, per_one)
+}
+
 /// Returns the single-precision number nearest to a number of at most 53 bits, which a double holds.
 pub fn nearest_float(n: Number) -> Number {
     let Exact { m, e } = Exact::new(n);

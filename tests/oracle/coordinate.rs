@@ -1,4 +1,4 @@
-//! Computes where a unit samples: INT-4, TEX-11, TEX-12, TEX-13, TEX-15, and the coordinates of the texture shader.
+//! Computes where a unit samples: INT-4, TEX-11, TEX-12, TEX-13, TEX-15, TEX-20, and the coordinates of the texture shader.
 
 use super::raster::{Sample, Setup};
 use super::real::{Number, bits, floor_div, floor_sum};
@@ -22,6 +22,15 @@ pub enum Place {
     Floats([f32; 2]),
     /// A direction that the dot unit computes.
     Vector([f32; 3]),
+    /// TEX-20: s and t as of `Set`, of the first layer of a volume.
+    Layer(usize),
+    /// TEX-20: s and t as of `Set`, on face +X of a cube map.
+    Face(usize),
+    /// TEX-20: a direction into an image of two dimensions, of a coordinate set or of the dot unit.
+    Plane(usize),
+    PlaneVector([f32; 3]),
+    /// TEX-20: ends of face +X by the signs of numbers of the dot unit.
+    Ends([f32; 2]),
     /// PNT-2: the pixel's distances from a point in 1/16 pixel, and the point's size in 1/8 pixel.
     Sprite([i128; 2], i128),
 }
@@ -69,6 +78,10 @@ impl Setup {
     fn vector(&self, sample: &Sample, set: usize) -> [Number; 3] {
         [0, 1, 2].map(|n| self.component(sample, set, n))
     }
+
+    fn flat(&self, sample: &Sample, set: usize) -> [Number; 3] {
+        [0, 1, 3].map(|n| self.component(sample, set, n))
+    }
 }
 
 impl Place {
@@ -76,7 +89,7 @@ impl Place {
     /// rectangle count as 1.
     pub fn at(&self, setup: &Setup, sample: &Sample, size: [u32; 2]) -> (usize, [i128; 2]) {
         match self {
-            Place::Set(set) => {
+            Place::Set(set) | Place::Layer(set) => {
                 let q = setup.component(sample, *set, 3);
                 (0, [0, 1].map(|a| ratio(setup.component(sample, *set, a), q, size[a])))
             }
@@ -88,6 +101,17 @@ impl Place {
             Place::Floats(f) => (0, [0, 1].map(|a| limited(Number::of(f[a]).floor(256 * i128::from(size[a]))))),
             Place::Vector(v) => finite(*v).map_or((0, [0, 0]), |v| on_face(v, size[0])),
             Place::Sprite(d, n) => (0, [0, 1].map(|a| sprite(d[a], *n, 256 * i128::from(size[a])))),
+            Place::Face(set) => {
+                let ([s, t, q], half) = (setup.flat(sample, *set), 128 * i128::from(size[0]));
+                let on = |n: Number| match q.m {
+                    0 => n.m.signum() << 23,
+                    _ => quotient(n, q).floor(half).clamp(-1 << 23, 1 << 23),
+                };
+                (0, [half + on(s), half + on(-t)])
+            }
+            Place::Plane(set) => (0, on_plane(setup.vector(sample, *set), size)),
+            Place::PlaneVector(v) => (0, finite(*v).map_or([-LIMIT, LIMIT], |v| on_plane(v, size))),
+            Place::Ends(f) => (0, ends(*f).map(|end| 256 * i128::from(size[0]) * end)),
         }
     }
 
@@ -100,8 +124,8 @@ impl Place {
     /// TEX-11: returns the face on which a quad is measured.
     pub fn face(&self, setup: &Setup, sample: &Sample) -> usize {
         match self {
-            Place::Direction(set) => face_of(setup.vector(sample, *set)),
-            Place::Vector(v) => finite(*v).map_or(0, face_of),
+            Place::Direction(set) | Place::Plane(set) => face_of(setup.vector(sample, *set)),
+            Place::Vector(v) | Place::PlaneVector(v) => finite(*v).map_or(0, face_of),
             _ => 0,
         }
     }
@@ -114,8 +138,19 @@ impl Place {
             let (minor, major) = project(face, v);
             (major.m > 0).then(|| minor.map(|sc| across(sc, major, scale[0] >> 1)))
         };
+        let flat = |v: [Number; 3]| {
+            let ([sc, tc], major) = project(face, v);
+            (major.m > 0).then(|| [quotient(sc, major).floor(scale[0]), quotient(-tc, major).floor(scale[1])])
+        };
         match self {
-            Place::Set(set) => {
+            Place::Face(set) => {
+                let ([s, t, q], half) = (setup.flat(sample, *set), scale[0] >> 1);
+                (q.m > 0).then(|| [s, -t].map(|n| half + quotient(n, q).floor(half)))
+            }
+            Place::Plane(set) => flat(setup.vector(sample, *set)),
+            Place::PlaneVector(v) => flat(finite(*v)?),
+            Place::Ends(f) => Some(ends(*f).map(|end| scale[0] * end)),
+            Place::Set(set) | Place::Layer(set) => {
                 let q = setup.component(sample, *set, 3);
                 (q.m > 0).then(|| [0, 1].map(|a| quotient(setup.component(sample, *set, a), q).floor(scale[a])))
             }
@@ -127,6 +162,20 @@ impl Place {
             Place::Sprite(d, n) => Some([0, 1].map(|a| sprite(d[a], *n, scale[a]))),
         }
     }
+}
+
+/// TEX-20: returns u and v of a direction on an image of two dimensions.
+fn on_plane(v: [Number; 3], size: [u32; 2]) -> [i128; 2] {
+    let ([sc, tc], major) = project(face_of(v), v);
+    if major.m == 0 {
+        return [-LIMIT, LIMIT];
+    }
+    [(sc, size[0]), (-tc, size[1])].map(|(minor, side)| quotient(minor, major).floor(256 * i128::from(side)))
+}
+
+/// TEX-20: returns 1 for the last column and the last row, otherwise 0.
+fn ends([first, second]: [f32; 2]) -> [i128; 2] {
+    [first < 0.0, second > 0.0].map(i128::from)
 }
 
 fn limited(u: i128) -> i128 {

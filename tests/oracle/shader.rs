@@ -64,6 +64,11 @@ impl<'a> Units<'a> {
     fn unit(&self, k: usize, i: i128, j: i128, sample: &Sample) -> Color {
         let stage = &self.draw.texture_shader[k];
         count("operation", stage.operation.name());
+        if let (ShaderOperation::Sample2D | ShaderOperation::DotProduct3D, Some(image)) =
+            (stage.operation, &self.images[k])
+        {
+            count("other kind", image.kind());
+        }
         match stage.operation {
             ShaderOperation::None | ShaderOperation::CullFragment { .. } => Color::plain([0, 0, 0, 255]),
             ShaderOperation::DotProduct => Color::plain([0; 4]),
@@ -148,6 +153,8 @@ impl<'a> Units<'a> {
         if let Some((d, n)) = self.setup.sprite(i, j).filter(|_| k == 3 && self.draw.point_sprite) {
             return Place::Sprite(d, n);
         }
+        let is_cube = self.images[k].as_ref().is_some_and(Image::is_cube);
+        let toward = |vector: [f32; 3]| if is_cube { Place::Vector(vector) } else { Place::PlaneVector(vector) };
         match stage.operation {
             ShaderOperation::BumpEnvironment { matrix, .. } => {
                 // TSH-7: both bytes are two's complement regardless of the flags. The sums are in single precision.
@@ -164,19 +171,22 @@ impl<'a> Units<'a> {
                 Place::Bytes([g, b], self.whole())
             }
             ShaderOperation::DotProduct2D => Place::Floats([dot(k - 1), dot(k)]),
-            ShaderOperation::DotProductCube => Place::Vector([dot(k - 2), dot(k - 1), dot(k)]),
-            ShaderOperation::DotReflectDiffuse => Place::Vector([dot(k - 1), dot(k), dot(k + 1)]),
+            ShaderOperation::DotProduct3D if is_cube => Place::Ends([dot(k - 2), dot(k - 1)]),
+            ShaderOperation::DotProduct3D => Place::Floats([dot(k - 2), dot(k - 1)]),
+            ShaderOperation::DotProductCube => toward([dot(k - 2), dot(k - 1), dot(k)]),
+            ShaderOperation::DotReflectDiffuse => toward([dot(k - 1), dot(k), dot(k + 1)]),
             ShaderOperation::DotReflectSpecular => {
                 let eye = [k - 2, k - 1, k].map(|unit| {
                     let set = self.draw.texture_shader[unit].coordinate_set;
                     self.float(sample, set, 3)
                 });
-                Place::Vector(reflect([dot(k - 2), dot(k - 1), dot(k)], eye))
+                toward(reflect([dot(k - 2), dot(k - 1), dot(k)], eye))
             }
-            ShaderOperation::DotReflectConstantEye { eye } => {
-                Place::Vector(reflect([dot(k - 2), dot(k - 1), dot(k)], eye))
-            }
-            _ if self.images[k].as_ref().is_some_and(Image::is_cube) => Place::Direction(set),
+            ShaderOperation::DotReflectConstantEye { eye } => toward(reflect([dot(k - 2), dot(k - 1), dot(k)], eye)),
+            ShaderOperation::Sample2D if is_cube => Place::Face(set),
+            ShaderOperation::Sample2D => Place::Layer(set),
+            ShaderOperation::SampleCube => Place::Plane(set),
+            _ if is_cube => Place::Direction(set),
             _ => Place::Set(set),
         }
     }

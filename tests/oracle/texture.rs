@@ -60,6 +60,10 @@ impl Image {
         Image { unit, kind: texture.kind, format: texture.format, size, levels, layers, border, words, palette, nv2a }
     }
 
+    pub fn kind(&self) -> &'static str {
+        self.kind.name()
+    }
+
     pub fn is_cube(&self) -> bool {
         self.kind == TextureKind::Cube
     }

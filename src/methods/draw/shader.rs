@@ -1,6 +1,6 @@
 //! The texture shader and the combiners of a draw.
 
-use ninebit::state::{Combiners, Named, Profile, ShaderOperation, ShaderStage};
+use ninebit::state::{Combiners, Named, Profile, ShaderOperation, ShaderStage, TextureKind};
 use ninebit_program::registers::layout::{OWN_CONSTANTS, config, stages};
 use ninebit_program::registers::unit::*;
 use ninebit_program::registers::{RegisterWords, Word, decode};
@@ -12,6 +12,24 @@ use crate::gap::Gap;
 /// Returns the code of a stage.
 pub(crate) fn code(view: &mut View<'_>, unit: usize) -> u32 {
     view.get(class::SET_SHADER_STAGE_PROGRAM) >> (STAGE_BITS * unit as u32) & ((1 << STAGE_BITS) - 1)
+}
+
+/// Returns the operation of a stage that samples a texture of this kind, by the code of the stage (TEX-20).
+pub(crate) fn of_kind(
+    view: &mut View<'_>,
+    unit: usize,
+    operation: ShaderOperation,
+    kind: TextureKind,
+) -> ShaderOperation {
+    use ShaderOperation as Op;
+    match (operation, code(view, unit), kind) {
+        (Op::Sample, STAGE_TWO, TextureKind::Cube | TextureKind::ThreeDimensional) => Op::Sample2D,
+        (Op::Sample, STAGE_CUBE, TextureKind::TwoDimensional) => Op::SampleCube,
+        // `None` samples no kind.
+        (Op::Sample, STAGE_CUBE, TextureKind::Rectangle | TextureKind::ThreeDimensional)
+        | (Op::Sample, STAGE_THREE, TextureKind::Cube) => Op::None,
+        _ => operation,
+    }
 }
 
 /// Reads a stage of the texture shader.
@@ -42,6 +60,7 @@ pub(crate) fn stage(view: &mut View<'_>, unit: usize) -> ShaderStage {
         STAGE_DOT_2D => Op::DotProduct2D,
         STAGE_REFLECT_DIFFUSE => Op::DotReflectDiffuse,
         STAGE_REFLECT_SPECULAR => Op::DotReflectSpecular,
+        STAGE_DOT_3D => Op::DotProduct3D,
         STAGE_DOT_CUBE => Op::DotProductCube,
         STAGE_ALPHA_RED => Op::DependentAlphaRed,
         STAGE_GREEN_BLUE => Op::DependentGreenBlue,
@@ -53,7 +72,6 @@ pub(crate) fn stage(view: &mut View<'_>, unit: usize) -> ShaderStage {
             let name = match code {
                 8 => "BRDF".to_owned(),
                 0xa => "a dot product for depths".to_owned(),
-                0xd => "a dot product for volumes".to_owned(),
                 _ => format!("stage program 0x{code:x}"),
             };
             view.note(Gap::NotModelled(format!("{name} at unit {unit}")));

@@ -70,6 +70,8 @@ fn operation(
             Some((_, Some(shadow))) if shadow.reference == ShadowReference::R => STAGE_THREE,
             _ => STAGE_TWO,
         },
+        Op::Sample2D => STAGE_TWO,
+        Op::SampleCube => STAGE_CUBE,
         Op::PassThrough => STAGE_PASS_THROUGH,
         Op::CullFragment { .. } => STAGE_CULL,
         Op::BumpEnvironment { matrix, luminance } => {
@@ -84,6 +86,7 @@ fn operation(
         Op::DotProduct2D => STAGE_DOT_2D,
         Op::DotReflectDiffuse => STAGE_REFLECT_DIFFUSE,
         Op::DotReflectSpecular => STAGE_REFLECT_SPECULAR,
+        Op::DotProduct3D => STAGE_DOT_3D,
         Op::DotProductCube => STAGE_DOT_CUBE,
         Op::DependentAlphaRed => STAGE_ALPHA_RED,
         Op::DependentGreenBlue => STAGE_GREEN_BLUE,

@@ -71,7 +71,7 @@ pub(super) fn initially_zero(draw: &Draw, black: &[u8]) -> u64 {
                 black && !unit.signed.contains(&true) && (!bordered || unit.border_color[channel] == 0)
             };
             let black = match stage.operation {
-                ShaderOperation::Sample if unit.as_ref().is_some_and(sampled) => true,
+                operation if operation.samples_own() && unit.as_ref().is_some_and(sampled) => true,
                 ShaderOperation::PassThrough => false,
                 ShaderOperation::None | ShaderOperation::CullFragment { .. } => channel < 3,
                 ShaderOperation::DotProduct => true,

@@ -200,6 +200,7 @@ fn shader_liveness(draw: &Draw, units: &mut [u8; TEXTURE_UNITS]) -> [bool; TEXTU
             units[stage.previous] |= channels;
             match stage.operation {
                 ShaderOperation::DotProduct2D => dots[index.saturating_sub(1)..=index].fill(true),
+                ShaderOperation::DotProduct3D => dots[index.saturating_sub(2)..index].fill(true),
                 ShaderOperation::DotProductCube
                 | ShaderOperation::DotReflectDiffuse
                 | ShaderOperation::DotReflectSpecular

@@ -285,7 +285,7 @@ fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<
         if stage.operation == ShaderOperation::None {
             continue;
         }
-        let sampled = unit.filter(|_| matches!(stage.operation, ShaderOperation::Sample) || moves(stage));
+        let sampled = unit.filter(|_| stage.operation.samples_own() || moves(stage));
         let texture = sampled.map(|unit| (&scene.textures[unit.texture], texture_size(scene, unit.texture)));
         for vertex in 0..draw.vertices.len() {
             let set = draw.vertices.coordinates(vertex, stage.coordinate_set);
@@ -296,15 +296,16 @@ fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<
             let finite = set.iter().all(|c| c.is_finite());
             let outside = match texture {
                 _ if !finite => true,
-                Some((Texture { kind: TextureKind::TwoDimensional, .. }, (width, height))) => {
-                    far(0, width) || far(1, height)
-                }
+                Some((Texture { kind, .. }, _)) if stage.operation.takes_direction(*kind) => false,
                 Some((Texture { kind: TextureKind::Rectangle, .. }, _)) => far(0, 1) || far(1, 1),
-                Some((Texture { kind: TextureKind::ThreeDimensional, image, .. }, (width, height))) => {
+                Some((Texture { kind: TextureKind::ThreeDimensional, image, .. }, (width, height)))
+                    if stage.operation != ShaderOperation::Sample2D =>
+                {
                     let layers = if let TextureImage::Texels(texels) = image { texels.layers } else { 1 };
                     far(0, width) || far(1, height) || far(2, layers)
                 }
-                _ => false,
+                Some((_, (width, height))) => far(0, width) || far(1, height),
+                None => false,
             };
             if turns && finite && set[3] != 1.0 && found < MAX_ERRORS {
                 found += 1;
@@ -450,6 +451,9 @@ fn plan_unit(scene: &Scene, index: usize, state: TextureUnit, stage: ShaderStage
         TextureImage::Texels(texels) => (texels.levels, texels.border),
         TextureImage::Target { .. } | TextureImage::Depth { .. } => (1, false),
     };
+    // TEX-20: of a volume a stage for two dimensions reads the first layer.
+    let flat = texture.kind == TextureKind::ThreeDimensional && stage.operation == ShaderOperation::Sample2D;
+    let (kind, layers) = if flat { (TextureKind::TwoDimensional, 1) } else { (texture.kind, layers) };
     // Levels that no lod can reach are left out.
     let reachable = if state.mip_filter == MipFilter::None { 1 } else { count };
     let (mut levels, face_words) = Level::chain(texture.format, width, height, count, border);
@@ -458,7 +462,7 @@ fn plan_unit(scene: &Scene, index: usize, state: TextureUnit, stage: ShaderStage
         index,
         state,
         stage,
-        kind: texture.kind,
+        kind,
         format: texture.format,
         levels,
         face_words,

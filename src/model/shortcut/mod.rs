@@ -30,8 +30,18 @@ pub struct Reading {
 }
 
 const COLORS: [Rule; 2] = [Rule::Num4, Rule::Int2];
-const FILTER: [Rule; 9] =
-    [Rule::Tex6, Rule::Tex9, Rule::Tex17, Rule::Int4, Rule::Tex12, Rule::Tex15, Rule::Tsh4, Rule::Tsh6, Rule::Tsh7];
+const FILTER: [Rule; 10] = [
+    Rule::Tex6,
+    Rule::Tex9,
+    Rule::Tex17,
+    Rule::Int4,
+    Rule::Tex12,
+    Rule::Tex15,
+    Rule::Tex20,
+    Rule::Tsh4,
+    Rule::Tsh6,
+    Rule::Tsh7,
+];
 const COMBINERS: [Rule; 11] = [
     Rule::Cmb2,
     Rule::Cmb3,
@@ -47,8 +57,8 @@ const COMBINERS: [Rule; 11] = [
 ];
 const FOG: [Rule; 3] = [Rule::Num6, Rule::Fog2, Rule::Fog4];
 /// All of a shader in floats, from the vertices' colours to the output.
-const SHADER: [Rule; 28] = {
-    let mut all = [Rule::Num4; 28];
+const SHADER: [Rule; 29] = {
+    let mut all = [Rule::Num4; 29];
     let parts: [&[Rule]; 5] = [&COLORS, &FILTER, &COMBINERS, &FOG, &[Rule::Tsh8, Rule::Tsh9, Rule::Rop2]];
     let (mut part, mut at) = (0, 0);
     while part < parts.len() {

@@ -31,6 +31,10 @@ pub enum ShaderOperation {
     None,
     /// Samples the unit's texture, of any kind, at the interpolated coordinates.
     Sample,
+    /// Samples a cube map or a volume as a stage for two dimensions does (TEX-20).
+    Sample2D,
+    /// Samples a two-dimensional texture as a stage for cube maps does (TEX-20).
+    SampleCube,
     /// Returns the coordinates s, t, r, q as a colour (TSH-9).
     PassThrough,
     /// Drops the fragment if one of its coordinates has the wrong sign (TSH-10). Otherwise the result is opaque black.
@@ -54,12 +58,14 @@ pub enum ShaderOperation {
     DotProduct,
     /// Computes the second dot product and samples a 2D texture at the two (texm3x2tex).
     DotProduct2D,
-    /// Computes the third dot product and samples a cube map in the direction of the three (texm3x3tex).
+    /// Computes the third dot product and samples at the first two (TEX-20).
+    DotProduct3D,
+    /// Computes the third dot product and samples in the direction of the three (texm3x3tex).
     DotProductCube,
-    /// Computes the second dot product and samples a cube map in the direction of the vector of all three, which is the
+    /// Computes the second dot product and samples in the direction of the vector of all three, which is the
     /// normal. The next unit computes the third product.
     DotReflectDiffuse,
-    /// Computes the third dot product and samples a cube map in the direction of the eye vector reflected about the
+    /// Computes the third dot product and samples in the direction of the eye vector reflected about the
     /// normal. The eye vector is the q of the three units (texm3x3vspec; TSH-5).
     DotReflectSpecular,
     /// Like [`DotReflectSpecular`](Self::DotReflectSpecular), but with a constant eye vector (texm3x3spec).
@@ -75,6 +81,8 @@ impl ShaderOperation {
         match self {
             ShaderOperation::None => "None",
             ShaderOperation::Sample => "Sample",
+            ShaderOperation::Sample2D => "Sample2D",
+            ShaderOperation::SampleCube => "SampleCube",
             ShaderOperation::PassThrough => "PassThrough",
             ShaderOperation::CullFragment { .. } => "CullFragment",
             ShaderOperation::BumpEnvironment { .. } => "BumpEnvironment",
@@ -82,6 +90,7 @@ impl ShaderOperation {
             ShaderOperation::DependentGreenBlue => "DependentGreenBlue",
             ShaderOperation::DotProduct => "DotProduct",
             ShaderOperation::DotProduct2D => "DotProduct2D",
+            ShaderOperation::DotProduct3D => "DotProduct3D",
             ShaderOperation::DotProductCube => "DotProductCube",
             ShaderOperation::DotReflectDiffuse => "DotReflectDiffuse",
             ShaderOperation::DotReflectSpecular => "DotReflectSpecular",
@@ -100,15 +109,31 @@ impl ShaderOperation {
         )
     }
 
+    /// Returns whether the operation samples the unit's texture at the interpolated coordinates.
+    pub fn samples_own(&self) -> bool {
+        matches!(self, ShaderOperation::Sample | ShaderOperation::Sample2D | ShaderOperation::SampleCube)
+    }
+
+    /// Returns whether the operation samples an image of a kind in a direction.
+    pub fn takes_direction(&self, kind: TextureKind) -> bool {
+        match self {
+            ShaderOperation::Sample => kind == TextureKind::Cube,
+            ShaderOperation::SampleCube
+            | ShaderOperation::DotProductCube
+            | ShaderOperation::DotReflectDiffuse
+            | ShaderOperation::DotReflectSpecular
+            | ShaderOperation::DotReflectConstantEye { .. } => true,
+            _ => false,
+        }
+    }
+
     /// Returns whether the operation reads the colour of an earlier unit, [`ShaderStage::previous`].
     pub fn reads_previous(&self) -> bool {
-        !matches!(
-            self,
-            ShaderOperation::None
-                | ShaderOperation::Sample
-                | ShaderOperation::PassThrough
-                | ShaderOperation::CullFragment { .. }
-        )
+        !self.samples_own()
+            && !matches!(
+                self,
+                ShaderOperation::None | ShaderOperation::PassThrough | ShaderOperation::CullFragment { .. }
+            )
     }
 
     /// Returns the kinds of texture that the operation can sample. Meaningless for an operation that samples nothing.
@@ -119,7 +144,9 @@ impl ShaderOperation {
             | ShaderOperation::DependentGreenBlue
             | ShaderOperation::DotProduct2D => &[TextureKind::TwoDimensional, TextureKind::Rectangle],
             ShaderOperation::Sample => TextureKind::ALL,
-            _ => &[TextureKind::Cube],
+            ShaderOperation::Sample2D => &[TextureKind::Cube, TextureKind::ThreeDimensional],
+            ShaderOperation::SampleCube => &[TextureKind::TwoDimensional],
+            _ => &[TextureKind::Cube, TextureKind::TwoDimensional],
         }
     }
 
@@ -129,6 +156,7 @@ impl ShaderOperation {
             self,
             ShaderOperation::DotProduct
                 | ShaderOperation::DotProduct2D
+                | ShaderOperation::DotProduct3D
                 | ShaderOperation::DotProductCube
                 | ShaderOperation::DotReflectDiffuse
                 | ShaderOperation::DotReflectSpecular
@@ -170,7 +198,7 @@ impl ShaderStage {
         let pad = |operation| matches!(operation, Op::DotProduct);
         let two_pads = pad(before(2)) && pad(before(1));
         match at(index) {
-            Op::None | Op::Sample | Op::PassThrough | Op::CullFragment { .. } => None,
+            Op::None | Op::Sample | Op::Sample2D | Op::SampleCube | Op::PassThrough | Op::CullFragment { .. } => None,
             Op::BumpEnvironment { .. } => (index == 0
                 || index == 1 && matches!(before(1), Op::None | Op::CullFragment { .. }))
             .then_some("it moves coordinates by the colour of an earlier unit: put it after a stage that has one, at stage 1, 2 or 3"),
@@ -182,7 +210,7 @@ impl ShaderStage {
             Op::DotProduct2D => {
                 (!pad(before(1))).then_some("put `DotProduct` at the stage before it, which makes it stage 2 or 3")
             }
-            Op::DotProductCube => (!two_pads).then_some("put `DotProduct` at stages 1 and 2, and this at stage 3"),
+            Op::DotProduct3D | Op::DotProductCube => (!two_pads).then_some("put `DotProduct` at stages 1 and 2, and this at stage 3"),
             Op::DotReflectDiffuse => {
                 let next = matches!(at(index + 1), Op::DotReflectSpecular | Op::DotReflectConstantEye { .. });
                 (!pad(before(1)) || index == 3 || !next)

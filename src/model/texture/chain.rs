@@ -12,7 +12,9 @@ use crate::raster::binary::Binary;
 use crate::raster::fog::factor;
 use crate::raster::ideal;
 use crate::raster::interpolate::Sample;
-use crate::state::{DependentScale, ShaderOperation, ShaderStage, TEXTURE_UNITS, TextureFormat, TriangleVertices};
+use crate::state::{
+    DependentScale, ShaderOperation, ShaderStage, TEXTURE_UNITS, TextureFormat, TextureKind, TriangleVertices,
+};
 use crate::trace::{Decision, Observer, Rule, Silent, Work};
 
 /// A texture shader with everything that it reads.
@@ -115,7 +117,7 @@ impl<L: Lane> Chain<'_, L> {
                 }
                 [L::ZERO; 4]
             }
-            ShaderOperation::Sample => sampled(self.sampled(index, at, observer)),
+            operation if operation.samples_own() => sampled(self.sampled(index, at, observer)),
             _ => sampled(self.dependent(index, at, state, observer)),
         };
         state.registers[index] = register;
@@ -260,6 +262,15 @@ impl<L: Lane> Chain<'_, L> {
                 let dots = [index - 1, index].map(|index| self.dot(index, at, state, observer));
                 (Target::Floats(dots.map(|d| d.fixed)), real(&|| RealTarget::Coordinates(dots.map(|d| d.real))))
             }
+            ShaderOperation::DotProduct3D => {
+                let dots = [index - 2, index - 1].map(|index| self.dot(index, at, state, observer));
+                let (fixed, long) = (dots.map(|d| d.fixed), dots.map(|d| d.real));
+                if self.unit(index).is_some_and(|unit| unit.kind == TextureKind::Cube) {
+                    (Target::Ends(fixed), real(&|| RealTarget::ends(long)))
+                } else {
+                    (Target::Floats(fixed), real(&|| RealTarget::Coordinates(long)))
+                }
+            }
             ShaderOperation::DotReflectSpecular | ShaderOperation::DotReflectConstantEye { .. } => {
                 let normal = self.normal(at, state, observer);
                 let (eye, real_eye) = self.eye(index, at.sample, observer);
@@ -344,7 +355,7 @@ impl<L: Lane> Chain<'_, L> {
             let texel = |face: i64, [u, v]: [i64; 2]| face << 60 ^ nearest(u) << 30 ^ nearest(v);
             let sides = unit.scale(&unit.levels[0]);
             let on = |real: RealTarget| {
-                let real = real.real(None);
+                let real = real.real(unit.kind, None);
                 let uv = [0, 1].map(|n| unit::floored(real_coordinate(real.st[n], sides[n])));
                 texel(real.face as i64, uv)
             };
@@ -391,9 +402,10 @@ impl<L: Lane> Chain<'_, L> {
             let (target, own) = self.target(index, at, &mut state, &mut Silent);
             let place = self.followed(index, &target, own, sample);
             let face = *face.get_or_insert_with(|| target.face());
-            let real_face = *real_face.get_or_insert_with(|| if L::DECIDES { place.real(None).face } else { face });
+            let real_face =
+                *real_face.get_or_insert_with(|| if L::DECIDES { place.real(unit.kind, None).face } else { face });
             fixed[n] = target.at_quad(unit, face)?;
-            real[n] = place.real(Some(real_face)).st;
+            real[n] = place.real(unit.kind, Some(real_face)).st;
         }
         Some(QuadTargets { fixed, real, face: face? })
     }

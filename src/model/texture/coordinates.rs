@@ -4,11 +4,12 @@ mod describe;
 
 use super::cube::{Face, SignedAxis, major_axis};
 use super::lod::Quad;
+use super::other_kind::{of_direction, on_face as on_a_face};
 use super::planned::PlannedUnit;
 use super::report::Report;
 use crate::number::Integer;
 use crate::raster::binary::Binary;
-use crate::raster::interpolate::{COORDINATE_LIMIT, FARTHEST, Sample, coordinate, divided, face_coordinate, ratio};
+use crate::raster::interpolate::{COORDINATE_LIMIT, FARTHEST, Sample, coordinate, divided, ratio};
 use crate::raster::stroke::sprite_coordinate;
 use crate::raster::weights::Linear;
 use crate::raster::{ideal, setup::Triangle};
@@ -18,11 +19,11 @@ use crate::trace::{Observer, Operand, Rule, Step, plain};
 /// The coordinates of a unit, set up for one triangle: the components that they are computed from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Coordinates {
-    /// s and t, where q is 1 at all three vertices (INT-4).
+    /// s and t, where q is 1 at all three vertices (INT-4). On a face t is negated, here and below (TEX-20).
     Plane([Linear<Binary>; 2]),
     /// s, t and q, for the ratios s/q and t/q (TEX-15).
     Ratio([Linear<Binary>; 3]),
-    /// The direction s, t, r into a cube map (TEX-12). q is ignored.
+    /// The direction s, t, r (TEX-12, TEX-20). q is ignored.
     Direction([Linear<Binary>; 3]),
     /// The place in a point (PNT-2): its position in 1/16 pixel, and its size in 1/8 pixel.
     Sprite {
@@ -35,11 +36,15 @@ pub enum Coordinates {
 
 impl Coordinates {
     /// Sets up the coordinates of a triangle. `vertices` holds s, t, r, q of its vertices.
+    #[allow(clippy::float_arithmetic, reason = "TEX-20: a change of sign")]
     #[inline]
     pub fn new(vertices: [[f32; 4]; 3], unit: &PlannedUnit) -> Coordinates {
-        let set = wrapped(unit, vertices);
+        let mut set = wrapped(unit, vertices);
+        if unit.is_on_face() {
+            set = set.map(|[s, t, r, q]| [s, -t, r, q]);
+        }
         let component = |n: usize| Linear::new(set.map(|vertex| vertex[n]));
-        if unit.kind == TextureKind::Cube {
+        if unit.takes_direction() {
             Coordinates::Direction([component(0), component(1), component(2)])
         } else if set.map(|vertex| vertex[3]) == [1.0; 3] {
             Coordinates::Plane([component(0), component(1)])
@@ -196,7 +201,7 @@ impl VertexCoordinates<'_> {
         if at.is_behind() {
             return None;
         }
-        match self.coordinates {
+        let at = match self.coordinates {
             Coordinates::Plane([s, t]) => {
                 Some([quad_coordinate(at.value(s), width), quad_coordinate(at.value(t), height)])
             }
@@ -205,15 +210,16 @@ impl VertexCoordinates<'_> {
                 (q.mantissa > 0).then(|| [quad_ratio(s, q, width), quad_ratio(t, q, height)])
             }
             Coordinates::Direction(direction) => {
-                let [s, t, m] = on_face(direction.map(|f| at.value(&f)), face);
-                (m.mantissa > 0).then(|| [face_coordinate(s, m, width, 16), face_coordinate(t, m, height, 16)])
+                let direction = on_face(direction.map(|f| at.value(&f)), face);
+                (direction[2].mantissa > 0).then(|| of_direction(self.unit, direction, [width, height], 16))
             }
             Coordinates::Sprite { at, size } => {
                 let [x, y] = Self::from_point(*at, pixel);
                 let of = |d: i64, side: i64| sprite_coordinate(d, (*size).into(), side, 16);
                 Some([of(x, width), of(y, height)])
             }
-        }
+        };
+        if self.unit.is_on_face() { at.map(|uv| uv.map(|u| on_a_face(u, width, 16))) } else { at }
     }
 
     /// Returns one component of the vertices' coordinates.
@@ -239,16 +245,23 @@ impl VertexCoordinates<'_> {
         let set = wrapped(self.unit, self.vertices.coordinates(self.unit.stage.coordinate_set));
         let component = |n: usize| ideal::mix(weights, set.map(|v| f64::from(v[n])));
         if let Coordinates::Direction(_) = self.coordinates {
-            return real_direction([component(0), component(1), component(2)], face);
+            return real_direction(self.unit.kind, [component(0), component(1), component(2)], face);
         }
         let q = component(3);
-        Real { face: Face::PositiveX, st: [0, 1].map(|n| ideal::quotient(component(n), q)) }
+        let st = [0, 1].map(|n| ideal::quotient(component(n), q));
+        Real { face: Face::PositiveX, st: if self.unit.is_on_face() { real_on_face(st) } else { st } }
     }
 }
 
-/// TEX-12 in real numbers: returns the coordinates of a direction on the given face or, without one, on the face that
+/// TEX-20 in real numbers: returns coordinates on face +X.
+#[allow(clippy::float_arithmetic, reason = "the ideal's coordinates")]
+fn real_on_face([s, t]: [f64; 2]) -> [f64; 2] {
+    [(1.0 + s) / 2.0, (1.0 - t) / 2.0]
+}
+
+/// TEX-12, TEX-20 in real numbers: returns the coordinates on an image of a direction on the given face or, without one, on the face that
 /// it meets.
-pub(crate) fn real_direction(direction: [f64; 3], face: Option<Face>) -> Real {
+pub(crate) fn real_direction(kind: TextureKind, direction: [f64; 3], face: Option<Face>) -> Real {
     let face = face.unwrap_or_else(|| Face::from_direction(direction, direction.map(f64::abs), 0.0));
     #[allow(clippy::float_arithmetic, reason = "the ideal's direction")]
     let [s, t, m] = face.components().map(|c| {
@@ -256,7 +269,11 @@ pub(crate) fn real_direction(direction: [f64; 3], face: Option<Face>) -> Real {
         if c.negative { -component } else { component }
     });
     #[allow(clippy::float_arithmetic, reason = "the ideal's coordinates")]
-    let st = [s, t].map(|c| if m == 0.0 { 0.0 } else { (c / m + 1.0) / 2.0 });
+    let st = match kind {
+        TextureKind::Cube => [s, t].map(|c| if m == 0.0 { 0.0 } else { (c / m + 1.0) / 2.0 }),
+        _ if m == 0.0 => [f64::NEG_INFINITY, f64::INFINITY],
+        _ => [s / m, -t / m],
+    };
     Real { face, st }
 }
 
@@ -271,7 +288,7 @@ impl SampleCoordinates for VertexCoordinates<'_> {
     fn on(&self, level: &Level) -> [i64; 2] {
         let sides = self.unit.scale(level);
         let [width, height] = sides.map(i64::from);
-        match self.coordinates {
+        let at = match self.coordinates {
             Coordinates::Plane([s, t]) => [coordinate(self.at.value(s), width), coordinate(self.at.value(t), height)],
             Coordinates::Ratio(of) => {
                 let [s, t, q] = of.map(|f| self.at.value(&f));
@@ -279,15 +296,15 @@ impl SampleCoordinates for VertexCoordinates<'_> {
             }
             Coordinates::Direction(of) => {
                 let direction = of.map(|f| self.at.value(&f));
-                let [s, t, m] = on_face(direction, face_of(direction));
-                [face_coordinate(s, m, width, 8), face_coordinate(t, m, height, 8)]
+                of_direction(self.unit, on_face(direction, face_of(direction)), [width, height], 8)
             }
             Coordinates::Sprite { at, size } => {
                 let [x, y] = Self::from_point(*at, self.pixel);
                 let of = |d: i64, side: i64| sprite_coordinate(d, (*size).into(), side, 8);
                 [of(x, width), of(y, height)]
             }
-        }
+        };
+        if self.unit.is_on_face() { at.map(|u| on_a_face(u, width, 8)) } else { at }
     }
 
     fn quad(&self) -> Option<Quad> {
@@ -319,6 +336,7 @@ impl SampleCoordinates for VertexCoordinates<'_> {
 
     fn rule(&self) -> Rule {
         match self.coordinates {
+            _ if self.unit.is_other_kind() => Rule::Tex20,
             Coordinates::Plane(_) | Coordinates::Sprite { .. } => Rule::Int4,
             Coordinates::Ratio(_) => Rule::Tex15,
             Coordinates::Direction(_) => Rule::Tex12,
@@ -338,14 +356,24 @@ impl SampleCoordinates for VertexCoordinates<'_> {
         let face = self.tell_face(report, "face", (self.at, &numbers), observer);
         for (axis, letter) in ["u", "v"].into_iter().enumerate() {
             let size = plain("size", sides[axis]);
+            let other = self.unit.is_other_kind();
             let (rule, operation, inputs) = match self.coordinates {
-                Coordinates::Plane(_) => ("INT-4", "floor_coordinate", vec![numbers[axis].clone(), size]),
-                Coordinates::Ratio(_) => {
+                Coordinates::Plane(_) if !other => ("INT-4", "floor_coordinate", vec![numbers[axis].clone(), size]),
+                Coordinates::Ratio(_) if !other => {
                     ("TEX-15", "floor_ratio", vec![numbers[axis].clone(), numbers[2].clone(), size])
+                }
+                Coordinates::Plane(_) | Coordinates::Ratio(_) => {
+                    let inputs = [numbers[axis].clone()].into_iter().chain(numbers.get(2).cloned()).chain([size]);
+                    ("TEX-20", ["floor_on_face_u", "floor_on_face_v"][axis], inputs.collect())
                 }
                 Coordinates::Direction(_) => {
                     let inputs = numbers.iter().cloned().chain(face.clone()).chain([size]).collect();
-                    ("TEX-12", ["floor_face_u", "floor_face_v"][axis], inputs)
+                    let (rule, operations) = if other {
+                        ("TEX-20", ["floor_on_plane_u", "floor_on_plane_v"])
+                    } else {
+                        ("TEX-12", ["floor_face_u", "floor_face_v"])
+                    };
+                    (rule, operations[axis], inputs)
                 }
                 Coordinates::Sprite { at, size: of } => {
                     ("PNT-2", "floor_sprite", self.sprite_inputs((*at, *of), self.pixel, axis, size))
@@ -407,12 +435,21 @@ impl SampleCoordinates for VertexCoordinates<'_> {
             }
             for (axis, letter) in ["u", "v"].into_iter().enumerate() {
                 let size = plain("size", sides[axis]);
+                let other = self.unit.is_other_kind();
                 let (operation, inputs) = match self.coordinates {
-                    Coordinates::Plane(_) => ("quad_coordinate", vec![numbers[axis].clone(), size]),
-                    Coordinates::Ratio(_) => ("quad_ratio", vec![numbers[axis].clone(), numbers[2].clone(), size]),
+                    Coordinates::Plane(_) if !other => ("quad_coordinate", vec![numbers[axis].clone(), size]),
+                    Coordinates::Ratio(_) if !other => {
+                        ("quad_ratio", vec![numbers[axis].clone(), numbers[2].clone(), size])
+                    }
+                    Coordinates::Plane(_) | Coordinates::Ratio(_) => {
+                        let inputs = [numbers[axis].clone()].into_iter().chain(numbers.get(2).cloned()).chain([size]);
+                        (["quad_on_face_u", "quad_on_face_v"][axis], inputs.collect())
+                    }
                     Coordinates::Direction(_) => {
                         let inputs = numbers.iter().cloned().chain(face.clone()).chain([size]).collect();
-                        (["quad_face_u", "quad_face_v"][axis], inputs)
+                        let of_face = ["quad_face_u", "quad_face_v"];
+                        let operations = if other { ["quad_on_plane_u", "quad_on_plane_v"] } else { of_face };
+                        (operations[axis], inputs)
                     }
                     Coordinates::Sprite { at, size: of } => {
                         ("quad_sprite", self.sprite_inputs((*at, *of), pixel, axis, size))

@@ -3,13 +3,14 @@
 use super::coordinates::{Real, SampleCoordinates, face_of, on_face};
 use super::cube::Face;
 use super::lod::Quad;
+use super::other_kind::{end_of_face, of_direction};
 use super::planned::PlannedUnit;
 use super::real::RealTarget;
 use super::report::Report;
 use super::shader;
 use super::shader_report;
 use crate::raster::binary::Binary;
-use crate::raster::interpolate::{COORDINATE_LIMIT, FARTHEST, Sample, face_coordinate};
+use crate::raster::interpolate::{COORDINATE_LIMIT, FARTHEST, Sample};
 use crate::raster::weights::Linear;
 use crate::state::{DependentScale, Level, TriangleVertices};
 use crate::trace::{Observer, Rule};
@@ -23,6 +24,8 @@ pub enum Target<'a> {
     Bytes([u8; 2], DependentScale),
     /// Two results of the dot unit, where 1.0 spans the whole image, or texels of a rectangle (TSH-4).
     Floats([f32; 2]),
+    /// Two results of the dot unit whose signs choose ends of face +X (TEX-20).
+    Ends([f32; 2]),
     /// A direction that the dot unit computed (TSH-4, TSH-5).
     Vector([f32; 3]),
 }
@@ -74,7 +77,7 @@ impl Target<'_> {
     pub(crate) fn face(&self) -> Face {
         match self {
             Target::Vector(vector) => face_of(direction(*vector)),
-            Target::Moved(_) | Target::Bytes(..) | Target::Floats(_) => Face::PositiveX,
+            Target::Moved(_) | Target::Bytes(..) | Target::Floats(_) | Target::Ends(_) => Face::PositiveX,
         }
     }
 
@@ -86,10 +89,8 @@ impl Target<'_> {
             Target::Moved(moved) => moved.on(unit, level, 8, COORDINATE_LIMIT),
             Target::Bytes(bytes, scale) => each(&|n| shader::dependent(bytes[n].into(), sides[n], *scale)),
             Target::Floats(floats) => each(&|n| shader::coordinate(floats[n].to_bits().into(), sides[n])),
-            Target::Vector(vector) => {
-                let [s, t, m] = on_face(direction(*vector), self.face());
-                [face_coordinate(s, m, sides[0], 8), face_coordinate(t, m, sides[1], 8)]
-            }
+            Target::Ends(dots) => each(&|n| end_of_face(n, dots[n].to_bits().into(), sides[n], 8)),
+            Target::Vector(vector) => of_direction(unit, on_face(direction(*vector), self.face()), sides, 8),
         }
     }
 
@@ -103,12 +104,13 @@ impl Target<'_> {
             Target::Moved(moved) => moved.on(unit, level, 16, FARTHEST),
             Target::Bytes(bytes, scale) => each(&|n| shader::dependent(bytes[n].into(), sides[n] << 8, *scale)),
             Target::Floats(floats) => each(&|n| shader::quad_coordinate(floats[n].to_bits().into(), sides[n])),
+            Target::Ends(dots) => each(&|n| end_of_face(n, dots[n].to_bits().into(), sides[n], 16)),
             Target::Vector(vector) => {
-                let [s, t, m] = on_face(direction(*vector), face);
-                if m.mantissa <= 0 {
+                let direction = on_face(direction(*vector), face);
+                if direction[2].mantissa <= 0 {
                     return None;
                 }
-                [face_coordinate(s, m, sides[0], 16), face_coordinate(t, m, sides[1], 16)]
+                of_direction(unit, direction, sides, 16)
             }
         })
     }
@@ -130,6 +132,7 @@ impl Target<'_> {
                 RealTarget::bytes(bytes.map(f64::from), whole)
             }
             Target::Floats(floats) => RealTarget::Coordinates(floats.map(f64::from)),
+            Target::Ends(dots) => RealTarget::ends(dots.map(f64::from)),
             Target::Vector(vector) => RealTarget::Vector(vector.map(f64::from)),
         }
     }
@@ -173,7 +176,7 @@ impl SampleCoordinates for Dependent<'_> {
     }
 
     fn real(&self, face: Option<Face>) -> Real {
-        self.real.real(face)
+        self.real.real(self.unit.kind, face)
     }
 
     fn real_quad(&self) -> Option<[[f64; 2]; 3]> {
@@ -182,9 +185,10 @@ impl SampleCoordinates for Dependent<'_> {
 
     fn rule(&self) -> Rule {
         match self.target {
+            _ if self.unit.is_other_kind() => Rule::Tex20,
             Target::Moved(_) => Rule::Tsh7,
             Target::Bytes(..) => Rule::Tsh6,
-            Target::Floats(_) | Target::Vector(_) => Rule::Tsh4,
+            Target::Floats(_) | Target::Ends(_) | Target::Vector(_) => Rule::Tsh4,
         }
     }
 

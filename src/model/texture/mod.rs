@@ -14,6 +14,7 @@ pub mod filter;
 pub mod format;
 pub mod lod;
 mod memory;
+pub mod other_kind;
 pub mod planned;
 pub mod real;
 pub mod report;

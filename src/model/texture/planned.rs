@@ -1,6 +1,6 @@
 //! A texture unit as the plan prepares it, and the image that it samples.
 
-use crate::state::{Level, MipFilter, ShaderStage, TextureFormat, TextureKind, TextureUnit};
+use crate::state::{Level, MipFilter, ShaderOperation, ShaderStage, TextureFormat, TextureKind, TextureUnit};
 use std::sync::Arc;
 
 /// A texture unit with the properties of the image that it samples.
@@ -12,7 +12,7 @@ pub struct PlannedUnit {
     pub state: TextureUnit,
     /// The unit's stage of the texture shader.
     pub stage: ShaderStage,
-    /// How the image is addressed.
+    /// How the image is addressed. A volume of which only the first layer is read counts as two-dimensional (TEX-20).
     pub kind: TextureKind,
     /// Format of the image's words.
     pub format: TextureFormat,
@@ -33,6 +33,21 @@ pub struct PlannedUnit {
 }
 
 impl PlannedUnit {
+    /// Returns whether the coordinates are a direction.
+    pub fn takes_direction(&self) -> bool {
+        self.stage.operation.takes_direction(self.kind)
+    }
+
+    /// Returns whether the coordinates are those of another kind than the image (TEX-20).
+    pub fn is_other_kind(&self) -> bool {
+        self.takes_direction() != (self.kind == TextureKind::Cube)
+    }
+
+    /// Returns whether s and t lie on face +X of a cube map (TEX-20).
+    pub fn is_on_face(&self) -> bool {
+        self.kind == TextureKind::Cube && self.stage.operation == ShaderOperation::Sample2D
+    }
+
     /// Returns whether the lod can affect the result.
     pub fn needs_lod(&self) -> bool {
         self.state.min_filter != self.state.mag_filter
@@ -48,4 +63,27 @@ pub struct Image<'a, L> {
     /// If the image is a surface that is read in its own format: the lane's values of its pixels, and the channels they
     /// hold (bits R, G, B, A).
     pub memory: Option<(&'a [[L; 4]], u8)>,
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// Returns a unit that samples an image of one texel.
+    pub(crate) fn unit() -> PlannedUnit {
+        PlannedUnit {
+            index: 0,
+            state: TextureUnit::new(0),
+            stage: ShaderStage::conventional(0, true),
+            kind: TextureKind::TwoDimensional,
+            format: TextureFormat::A8R8G8B8,
+            levels: vec![Level { offset: 0, width: 1, height: 1 }],
+            face_words: 1,
+            layers: 1,
+            border: false,
+            dithered: true,
+            palette: None,
+            live: 15,
+        }
+    }
 }

@@ -4,7 +4,7 @@
 use super::coordinates::{Real, real_direction};
 use super::cube::Face;
 use super::dot::Vector;
-use crate::state::DotMapping;
+use crate::state::{DotMapping, TextureKind};
 
 /// A colour as the ideal reads it, in bytes and in halves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -86,7 +86,7 @@ pub(crate) fn pass_through(coordinate: f64) -> f64 {
 pub enum RealTarget {
     /// s and t, where 1.0 spans the whole image, or texels of a rectangle.
     Coordinates([f64; 2]),
-    /// A direction into a cube map, of any length.
+    /// A direction of any length.
     Vector([f64; 3]),
 }
 
@@ -101,13 +101,18 @@ impl RealTarget {
         RealTarget::Coordinates(st.map(|byte| byte / whole))
     }
 
-    /// Returns the coordinates, for a cube map on the given face or, without one, on their own. A vector with a
+    /// TEX-20: returns the ends of face +X that two dot products choose.
+    pub(crate) fn ends([first, second]: [f64; 2]) -> RealTarget {
+        RealTarget::Coordinates([first < 0.0, second > 0.0].map(|is_last| f64::from(u8::from(is_last))))
+    }
+
+    /// Returns the coordinates on an image of a kind, of a direction on the given face or, without one, on its own. A vector with a
     /// component that is not finite counts as the zero vector.
-    pub(crate) fn real(&self, face: Option<Face>) -> Real {
+    pub(crate) fn real(&self, kind: TextureKind, face: Option<Face>) -> Real {
         match *self {
             RealTarget::Coordinates(st) => Real { face: Face::PositiveX, st },
-            RealTarget::Vector(v) if v.iter().any(|c| !c.is_finite()) => real_direction([0.0; 3], face),
-            RealTarget::Vector(v) => real_direction(v, face),
+            RealTarget::Vector(v) if v.iter().any(|c| !c.is_finite()) => real_direction(kind, [0.0; 3], face),
+            RealTarget::Vector(v) => real_direction(kind, v, face),
         }
     }
 }
@@ -141,6 +146,7 @@ mod tests {
         let color = RealColor::from_bytes([51.0, 192.0, 64.0, 0.0]);
         assert_eq!(offset([1.0, 0.0, 0.5, -1.0], &color), [1.0, -0.25]);
         assert_eq!((luminance(51.0, [2.0, 0.5]), luminance(51.0, [-9.0, 0.5])), (0.9, 0.0));
-        assert_eq!(RealTarget::Vector([f64::NAN, 1.0, 2.0]).real(None).face, Face::PositiveX);
+        let vector = RealTarget::Vector([f64::NAN, 1.0, 2.0]);
+        assert_eq!(vector.real(TextureKind::Cube, None).face, Face::PositiveX);
     }
 }

@@ -261,18 +261,33 @@ pub(super) fn coordinates<O: Observer>(
                 ("TSH-6", operation, vec![plain(previous_name(index, channel), bytes[axis]), size])
             }
             Target::Floats(floats) => {
-                let dot = float(name(index + axis - 1, "dot"), floats[axis]);
+                let dot = float(name(first_dot(place) + axis, "dot"), floats[axis]);
                 ("TSH-4", "floor_float", vec![dot, size])
+            }
+            Target::Ends(dots) => {
+                let dot = float(name(first_dot(place) + axis, "dot"), dots[axis]);
+                ("TEX-20", ["end_of_face_u", "end_of_face_v"][axis], vec![dot, size])
             }
             Target::Vector(_) => {
                 let mut inputs = direction.clone();
                 inputs.push(plain(report.name("face"), place.target.face() as i64));
                 inputs.push(size);
-                ("TEX-12", ["floor_float_face_u", "floor_float_face_v"][axis], inputs)
+                let (rule, operations) = if unit.is_other_kind() {
+                    ("TEX-20", ["floor_float_on_plane_u", "floor_float_on_plane_v"])
+                } else {
+                    ("TEX-12", ["floor_float_face_u", "floor_float_face_v"])
+                };
+                (rule, operations[axis], inputs)
             }
         };
         report.coordinate(rule, letter, floored[axis], ideal[axis], (operation, inputs), observer);
     }
+}
+
+/// Returns the stage of the first of two dot products that a unit samples at.
+fn first_dot(place: &Dependent<'_>) -> usize {
+    let before = if place.unit.stage.operation == crate::state::ShaderOperation::DotProduct3D { 2 } else { 1 };
+    place.unit.index - before
 }
 
 /// Returns the names under which the components of the vector that a unit samples with were reported.

@@ -92,7 +92,9 @@ impl ShaderSetup {
             let of_numbers = operation.is_dot()
                 || matches!(operation, ShaderOperation::PassThrough | ShaderOperation::CullFragment { .. });
             match (operation, planned.unit) {
-                (ShaderOperation::Sample, Some(unit)) => StageSetup::Places(Coordinates::new(set, &units[unit])),
+                (operation, Some(unit)) if operation.samples_own() => {
+                    StageSetup::Places(Coordinates::new(set, &units[unit]))
+                }
                 (ShaderOperation::BumpEnvironment { .. }, Some(_)) => {
                     StageSetup::Places(Coordinates::Plane([component(0), component(1)]))
                 }

@@ -32,14 +32,14 @@ pub(crate) fn sample<L: Lane, O: Observer>(
 ) -> ([L; 4], bool) {
     let wants_ideal = O::ON || O::MEASURES || L::DECIDES;
     let mut face = Face::PositiveX;
-    if unit.kind == TextureKind::Cube {
+    if unit.takes_direction() {
         face = if L::DECIDES { place.real(None).face } else { place.face() };
         observer.decided(Decision::Face, face as i64, || place.real(None).face as i64);
     }
-    let number = if unit.kind == TextureKind::ThreeDimensional {
-        layer::<L, O>(unit, place, observer)
-    } else {
-        Some(face as usize)
+    let number = match unit.kind {
+        TextureKind::ThreeDimensional => layer::<L, O>(unit, place, observer),
+        TextureKind::Cube => Some(face as usize),
+        TextureKind::TwoDimensional | TextureKind::Rectangle => Some(0),
     };
     let LevelChoice { choice, weight } = choose::<L, O>(unit, place, observer);
     let real = if wants_ideal { place.real(Some(face)).st } else { [0.0; 2] };

@@ -25,6 +25,8 @@ named! {
         Tex15 = "TEX-15" => Part::Interpolation,
         /// Texture coordinates on a face of a cube map.
         Tex12 = "TEX-12" => Part::Interpolation,
+        /// Texture coordinates on an image of another kind than the stage's.
+        Tex20 = "TEX-20" => Part::Interpolation,
         /// Dependent coordinates from the dot unit, as weights of the filter.
         Tsh4 = "TSH-4" => Part::Interpolation,
         /// Dependent coordinates from bytes, as weights of the filter.

@@ -148,6 +148,8 @@ pub const STAGE_REFLECT_DIFFUSE: u32 = 0xb;
 /// See [`STAGE_TWO`].
 pub const STAGE_REFLECT_SPECULAR: u32 = 0xc;
 /// See [`STAGE_TWO`].
+pub const STAGE_DOT_3D: u32 = 0xd;
+/// See [`STAGE_TWO`].
 pub const STAGE_DOT_CUBE: u32 = 0xe;
 /// See [`STAGE_TWO`].
 pub const STAGE_ALPHA_RED: u32 = 0xf;

@@ -30,7 +30,7 @@ pub fn error_range(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
         Rule::Int2 => symmetric(2.5 + 2.0 * 255.0 * weights(plan)),
         // A floor, the error of the weights, and the cuts of the terms.
         Rule::Int4 => floor(coordinate_slack(plan)),
-        Rule::Tex12 | Rule::Tex15 | Rule::Tex9 | Rule::Tex17 => None,
+        Rule::Tex12 | Rule::Tex15 | Rule::Tex20 | Rule::Tex9 | Rule::Tex17 => None,
         // The ideal follows these coordinates, so only the floor and the last bits of float64 remain.
         Rule::Tsh4 | Rule::Tsh6 => floor(1e-6),
         // A quotient by q magnifies the error of the weights, as in TEX-15.

@@ -33,12 +33,15 @@ pub(super) fn before(shader: &PlannedShader, index: usize) -> Vec<String> {
             return lines;
         }
         ShaderOperation::None | ShaderOperation::Sample | ShaderOperation::DotProduct => return lines,
+        ShaderOperation::Sample2D => at(format!("at (s/q, t/q) of set {set}, as of two dimensions")),
+        ShaderOperation::SampleCube => at(format!("toward (s, t, r) of set {set}, as of a cube map")),
         ShaderOperation::BumpEnvironment { matrix: [m0, m1, m2, m3], .. } => at(format!(
             "at (s + ({m0} B + {m3} G) / 128, t + ({m1} B + {m2} G) / 128) of set {set}, B and G of {previous} as signed bytes"
         )),
         ShaderOperation::DependentAlphaRed => at(format!("at ({previous}.a, {previous}.r)")),
         ShaderOperation::DependentGreenBlue => at(format!("at ({previous}.g, {previous}.b)")),
         ShaderOperation::DotProduct2D => at(format!("at (dot{}, dot{index})", index.saturating_sub(1))),
+        ShaderOperation::DotProduct3D => at("at (dot1, dot2)".to_owned()),
         ShaderOperation::DotProductCube | ShaderOperation::DotReflectDiffuse => at(format!("toward {vector}")),
         ShaderOperation::DotReflectSpecular => {
             let sets = [1, 2, 3].map(|index: usize| shader.stages[index].state.coordinate_set.to_string());

@@ -4,10 +4,12 @@ use super::unit::Units;
 use super::*;
 use ninebit::legality;
 
-/// Names of the operations; the last three are recognised and refused.
+/// Names of the operations; the last two are recognised and refused.
 const OPERATIONS: &[&str] = &[
     "None",
     "Sample",
+    "Sample2D",
+    "SampleCube",
     "PassThrough",
     "CullFragment",
     "BumpEnvironment",
@@ -15,11 +17,11 @@ const OPERATIONS: &[&str] = &[
     "DependentGreenBlue",
     "DotProduct",
     "DotProduct2D",
+    "DotProduct3D",
     "DotProductCube",
     "DotReflectDiffuse",
     "DotReflectSpecular",
     "DotReflectConstantEye",
-    "DotProduct3D",
     "DotProductDepth",
     "Brdf",
 ];
@@ -89,12 +91,14 @@ fn stage<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ShaderStage>, stage:
 fn operation<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ShaderOperation>) -> Option<ShaderOperation> {
     let (kind, rest) = reader.variant(raw, "texture shader operation", OPERATIONS)?;
     let takes = matches!(OPERATIONS[kind], "CullFragment" | "BumpEnvironment" | "DotReflectConstantEye");
-    if kind < 13 && !takes && !rest.is_empty() {
+    if kind < OPERATIONS.len() - 2 && !takes && !rest.is_empty() {
         return reader.unknown_variant(raw, "texture shader operation", OPERATIONS);
     }
     Some(match OPERATIONS[kind] {
         "None" => ShaderOperation::None,
         "Sample" => ShaderOperation::Sample,
+        "Sample2D" => ShaderOperation::Sample2D,
+        "SampleCube" => ShaderOperation::SampleCube,
         "PassThrough" => ShaderOperation::PassThrough,
         "CullFragment" => cull(reader, rest)?,
         "BumpEnvironment" => bump(reader, rest, raw.text)?,
@@ -102,6 +106,7 @@ fn operation<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ShaderOperation>
         "DependentGreenBlue" => ShaderOperation::DependentGreenBlue,
         "DotProduct" => ShaderOperation::DotProduct,
         "DotProduct2D" => ShaderOperation::DotProduct2D,
+        "DotProduct3D" => ShaderOperation::DotProduct3D,
         "DotProductCube" => ShaderOperation::DotProductCube,
         "DotReflectDiffuse" => ShaderOperation::DotReflectDiffuse,
         "DotReflectSpecular" => ShaderOperation::DotReflectSpecular,
@@ -112,7 +117,6 @@ fn operation<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ShaderOperation>
         }
         name => {
             let what = match name {
-                "DotProduct3D" => "dot products that sample volume textures",
                 "DotProductDepth" => "dot products that replace the depth",
                 _ => "bidirectional reflectance lookups",
             };

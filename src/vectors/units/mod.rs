@@ -166,6 +166,7 @@ pub fn all() -> Vec<&'static dyn Unit> {
         &texture::FilteredChannel,
         &texture::CubeDirection,
         &texture::CubeFace,
+        &texture::OtherKind,
         &texture::LevelChoice,
         &sampling::AnisotropyTaps,
         &reading::TapWeights,

@@ -332,6 +332,51 @@ impl Unit for CubeFace {
     computed!(plain run);
 }
 
+/// A look-up in an image of another kind than the stage's.
+pub(super) struct OtherKind;
+
+impl OtherKind {
+    fn run(&self, inputs: &[i64], _: &Conditions, observer: &mut impl Observer) -> [i64; 2] {
+        let [x, y, z] = [2, 3, 4].map(|n| float(inputs[n]));
+        let (turns, of) = (inputs[0] != 0, cube(inputs[1]));
+        let (kind, operation, set) = if turns {
+            (TextureKind::TwoDimensional, ShaderOperation::SampleCube, [x, y, z, 1.0])
+        } else {
+            (TextureKind::Cube, ShaderOperation::Sample2D, [x, y, 0.0, z])
+        };
+        let unit = PlannedUnit { kind, stage: ShaderStage { operation, ..of.stage }, ..of };
+        let found = with_place(set, |at, vertices| {
+            let coordinates = &Coordinates::new(vertices.coordinates(0), &unit);
+            let place = VertexCoordinates { unit: &unit, coordinates, at, pixel: (0, 0), vertices, perspective: true };
+            met(&unit, &place, observer)
+        });
+        let [_, u, v] = found.unwrap_or_default();
+        [u, v]
+    }
+}
+
+impl Unit for OtherKind {
+    known_as!(
+        "other-kind", &["TEX-20"],
+        "u and v in 1/256 texel of a two-dimensional image in a direction, or of a cube map at s, t and q (floats)", Geometry;
+        on &[Profile::Nv2a];
+        takes [
+            Column::flag("cfg.direction"),
+            Column::listed("cfg.size", Kind::Unsigned(13), &[1, 2, 16, 64, 256, 512]),
+            ["in.x", "in.y", "in.z"].map(|name| Column::float(name, true, 4)),
+        ];
+        gives [Column::results(["out.u", "out.v"], Kind::Signed(26))]
+    );
+
+    fn regressions(&self) -> Vec<Vec<i64>> {
+        // Every direction with components -1, 0 and 1, and all signs of s and t over q.
+        let component = |n: i64| [0xbf80_0000, 0, 0x3f80_0000][(n % 3) as usize];
+        (0..54).map(|n| vec![n / 27, 64, component(n), component(n / 3), component(n / 9)]).collect()
+    }
+
+    computed!(plain run);
+}
+
 /// The filter and the levels for a level of detail.
 pub(super) struct LevelChoice;
 

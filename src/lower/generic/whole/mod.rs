@@ -28,7 +28,7 @@ use crate::triangle::{ANY_UNIT, Field, Part};
 use crate::truth::Truth;
 
 /// The codes of stages, with their names in the text.
-const STAGES: [(&str, u32, ShaderOperation); 15] = {
+const STAGES: [(&str, u32, ShaderOperation); 16] = {
     use ShaderOperation as Op;
     [
         ("STAGE_TWO", words::STAGE_TWO, Op::Sample),
@@ -45,6 +45,7 @@ const STAGES: [(&str, u32, ShaderOperation); 15] = {
         ("STAGE_DOT_2D", words::STAGE_DOT_2D, Op::DotProduct2D),
         ("STAGE_REFLECT_DIFFUSE", words::STAGE_REFLECT_DIFFUSE, Op::DotReflectDiffuse),
         ("STAGE_REFLECT_SPECULAR", words::STAGE_REFLECT_SPECULAR, Op::DotReflectSpecular),
+        ("STAGE_DOT_3D", words::STAGE_DOT_3D, Op::DotProduct3D),
         ("STAGE_DOT_CUBE", words::STAGE_DOT_CUBE, Op::DotProductCube),
         ("STAGE_ALPHA_RED", words::STAGE_ALPHA_RED, Op::DependentAlphaRed),
         ("STAGE_GREEN_BLUE", words::STAGE_GREEN_BLUE, Op::DependentGreenBlue),

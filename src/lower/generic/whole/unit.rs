@@ -9,7 +9,7 @@ use ninebit::texture::planned::PlannedUnit;
 use ninebit_program::registers::unit::{ADDRESS_MODES, COLOR_KEYS, FORMATS, MIN_FILTERS};
 
 use super::reader::{LANE, OWN, plain, planned};
-use crate::coordinates::{log2_ratio, pairs_of_quad};
+use crate::coordinates::{Facing, log2_ratio, pairs_of_quad};
 use crate::generic::pieces::{Case, Maker, Piece, Reader, piece};
 use crate::input::Input;
 use crate::number::Number;
@@ -21,20 +21,26 @@ use crate::texel::Sampler;
 pub(super) enum Way {
     Own,
     Face,
+    Plane,
+    OnFace,
     Point,
     Moved,
     Bytes,
     Floats,
+    Ends,
 }
 
 /// All ways, with the names of their codes in the text and what they are.
-pub(super) const WAYS: [(Way, &str, &str); 6] = [
+pub(super) const WAYS: [(Way, &str, &str); 9] = [
     (Way::Own, "WAY_OWN", "s/q and t/q"),
-    (Way::Face, "WAY_FACE", "on a face"),
+    (Way::Face, "WAY_FACE", "toward a cube map"),
+    (Way::Plane, "WAY_PLANE", "toward an image of two dimensions"),
+    (Way::OnFace, "WAY_ON_FACE", "s/q and t/q on a face"),
     (Way::Point, "WAY_POINT", "in a point"),
     (Way::Moved, "WAY_MOVED", "displaced"),
     (Way::Bytes, "WAY_BYTES", "two bytes"),
     (Way::Floats, "WAY_FLOATS", "two dot products"),
+    (Way::Ends, "WAY_ENDS", "ends of a face by two dot products"),
 ];
 
 /// Classes of formats: bytes, or halves.
@@ -55,17 +61,29 @@ const QUAD: [[&str; 2]; 3] = [["quad[0]", "quad[1]"], ["quad[2]", "quad[3]"], ["
 fn place<'a>(maker: &Maker, reader: &Reader<'a>, way: Way) -> (Place<'a>, bool) {
     let given = ["given[0]", "given[1]"];
     let place = match way {
-        Way::Own => Place::Own(Projection::Ratio),
+        Way::Own | Way::OnFace => Place::Own(Projection::Ratio),
         Way::Point => Place::Own(Projection::Plane),
-        Way::Face => Place::Vector(["d[0]", "d[1]", "d[2]"].map(|name| reader.binary(name))),
+        Way::Face | Way::Plane => Place::Vector(["d[0]", "d[1]", "d[2]"].map(|name| reader.binary(name))),
         Way::Moved => Place::Moved(reader.patterns(given)),
         Way::Floats => Place::Floats(reader.patterns(given)),
+        Way::Ends => Place::Ends(reader.patterns(given)),
         Way::Bytes => {
             let bytes = reader.all(["@narrow(given[0])", "@narrow(given[1])"], (0, 255));
             Place::Bytes(bytes, maker.policies.dependent_scale)
         }
     };
     (place, way == Way::Point)
+}
+
+/// Returns a unit that samples by a way, and the face that its direction meets.
+fn unit_of<'a>(reader: &Reader<'a>, way: Way) -> (PlannedUnit, Option<Facing<'a>>) {
+    let has_faces = matches!(way, Way::Face | Way::OnFace | Way::Ends);
+    let kind = if has_faces { TextureKind::Cube } else { TextureKind::TwoDimensional };
+    let mut unit = planned(kind, TextureFormat::A8R8G8B8);
+    if way == Way::OnFace {
+        unit.stage.operation = ShaderOperation::Sample2D;
+    }
+    (unit, matches!(way, Way::Face | Way::Plane).then(|| reader.face()))
 }
 
 fn by_way(maker: &Maker, of: impl for<'a> Fn(&mut Reader<'a>, Way) -> Vec<Number<'a>>) -> Vec<Case> {
@@ -116,17 +134,17 @@ pub(super) fn copied<'a>(signs: [Number<'a>; 4], of: impl Fn([bool; 4]) -> bool)
 fn coordinates(maker: &Maker) -> Vec<Piece> {
     let near = by_way(maker, |reader, way| {
         let sides = reader.all(["width", "height"], SIDE);
-        let facing = (way == Way::Face).then(|| reader.face());
-        reader.on(&plain(), place(maker, reader, way), |unit| {
+        let (unit, facing) = unit_of(reader, way);
+        reader.on(&unit, place(maker, reader, way), |unit| {
             let uv = unit.coordinates(sides, facing);
             uv.map(|at| at.within(COORDINATE.0, COORDINATE.1)).to_vec()
         })
     });
     let far = by_way(maker, |reader, way| {
         let sides = reader.all(["width", "height"], SIDE);
-        let facing = (way == Way::Face).then(|| reader.face());
+        let (unit, facing) = unit_of(reader, way);
         let pixel = [Input::X, Input::Y].map(|input| reader.interpolator().input(input));
-        reader.on(&plain(), place(maker, reader, way), |unit| {
+        reader.on(&unit, place(maker, reader, way), |unit| {
             let (uv, behind) = unit.far_coordinates(pixel, sides, facing);
             uv.into_iter().chain([reader.flag(behind)]).collect()
         })

@@ -25,6 +25,7 @@ impl Check<'_> {
         if texture.format.depth().is_some() || unit.shadow.is_some() {
             self.comparison(draw, index, unit, texture);
         }
+        self.ends_of_face(draw, index, texture);
         let most = largest_anisotropy(self.scene.profile);
         let taps = unit.anisotropy;
         let flat = matches!(texture.kind, TextureKind::TwoDimensional | TextureKind::Rectangle);
@@ -55,6 +56,20 @@ impl Check<'_> {
             let message = "it is not known how a volume is filtered";
             let help = "write `min_filter: Nearest, mag_filter: Nearest`, without levels";
             self.refuse_unit(index, "VOL-1", true, message.to_string(), help);
+        }
+    }
+
+    /// TEX-20: checks that a dot product for volumes reads a cube map only where that is known.
+    fn ends_of_face(&mut self, draw: &Draw, index: usize, texture: &Texture) {
+        let stage = draw.texture_shader[index];
+        if stage.operation != ShaderOperation::DotProduct3D || texture.kind != TextureKind::Cube {
+            return;
+        }
+        let q = (0..draw.vertices.len()).map(|vertex| draw.vertices.coordinates(vertex, stage.coordinate_set)[3]);
+        if let Some(q) = q.into_iter().find(|q| *q != 0.0) {
+            let message = format!("it is not known where DotProduct3D reads a cube map with q = {q}");
+            let help = "take q = 0 at all vertices, a two-dimensional texture, or `DotProductCube`";
+            self.refuse_unit(index, "TEX-20", true, message, help);
         }
     }
 

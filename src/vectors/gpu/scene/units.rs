@@ -118,10 +118,15 @@ fn unit(lines: &mut Lines, n: usize, unit: &TextureUnit, texture: &Texture) -> R
 fn shader(lines: &mut Lines, draw: &Draw, n: usize, kind: Option<TextureKind>) -> Result<(), String> {
     let stage = &draw.texture_shader[n];
     lines.needs("GL_NV_texture_shader");
+    let turns = |kind| kind != TextureKind::Cube && stage.operation.takes_direction(kind);
     let operation = match stage.operation {
+        _ if kind.is_some_and(turns) => return Err("a texture of another kind than its stage".into()),
         ShaderOperation::None => "NONE",
         ShaderOperation::Sample if kind == Some(TextureKind::Cube) => "TEXTURE_CUBE_MAP",
         ShaderOperation::Sample => "TEXTURE_2D",
+        ShaderOperation::Sample2D | ShaderOperation::SampleCube | ShaderOperation::DotProduct3D => {
+            return Err("a texture of another kind than its stage".into());
+        }
         ShaderOperation::PassThrough => "PASS_THROUGH_NV",
         ShaderOperation::CullFragment { .. } => "CULL_FRAGMENT_NV",
         ShaderOperation::DependentAlphaRed => "DEPENDENT_AR_TEXTURE_2D_NV",

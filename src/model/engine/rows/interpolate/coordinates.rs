@@ -5,7 +5,7 @@ use super::depths::word;
 use super::{LaneWeights, quotient, ratio, reciprocal};
 use crate::engine::rows::lanes::{larger, limited, nearest, smaller};
 use crate::engine::rows::sampling::facing::{Facing, floors_on_face};
-use crate::engine::rows::sampling::place::{FARTHEST, Place};
+use crate::engine::rows::sampling::place::{FARTHEST, Place, change_kind};
 use crate::engine::rows::sampling::sampler::{Sampler, Third};
 use crate::raster::weights::Linear;
 use crate::state::TriangleVertices;
@@ -41,8 +41,10 @@ impl Coordinates {
         let (q, r) = (component(3), component(2));
         // CYL-1 is not for coordinates that are moved.
         let [a, b, c] = if sampler.moves { [a, b, c] } else { wrapped(unit, [a, b, c]) };
-        let (s, t) = (Linear::new([a[0], b[0], c[0]]), Linear::new([a[1], b[1], c[1]]));
-        let kind = match sampler.cube {
+        // TEX-20: t lies the other way round, also on a face, where it is y that changes its sign.
+        let t = if sampler.is_other_kind() { [-a[1], -b[1], -c[1]] } else { [a[1], b[1], c[1]] };
+        let (s, t) = (Linear::new([a[0], b[0], c[0]]), Linear::new(t));
+        let kind = match sampler.direction {
             true => Kind::Direction,
             false if q == [1.0; 3] => Kind::Plane,
             false => Kind::Ratio,
@@ -69,7 +71,7 @@ impl Coordinates {
             (Kind::Ratio, false) => self.divided(sampler, weights, lanes.clone(), place),
             (Kind::Direction, false) => {
                 self.components(weights, lanes.clone(), place);
-                on_faces(sampler, lanes, place);
+                on_faces(sampler, lanes.clone(), place);
             }
             (Kind::Direction, true) => {
                 self.components(weights, lanes.clone(), place);
@@ -88,7 +90,12 @@ impl Coordinates {
                 if sampler.pairs > 0 {
                     place.settle(lanes, sampler.bias());
                 }
+                return;
             }
+        }
+        if sampler.is_other_kind() {
+            let Place { at, direction: [x, y, z], .. } = place;
+            change_kind(at, sampler, lanes, |n| (x[n], y[n], z[n]) == (0.0, 0.0, 0.0));
         }
     }
 
@@ -137,13 +144,14 @@ impl Coordinates {
     pub(super) fn plane(&self, sampler: &Sampler) -> Option<[Linear<f64>; 2]> {
         let [s, t, _] = self.numbers;
         let is_plane = self.kind == Kind::Plane && !sampler.moves && !sampler.takes_quads() && sampler.third.is_none();
+        let is_plane = is_plane && !sampler.is_other_kind();
         is_plane.then_some([s, t])
     }
 
     /// INT-4: floors of linear functions.
     #[inline(always)]
     fn on_plane(&self, sampler: &Sampler, weights: LaneWeights<'_>, lanes: Range<usize>, place: &mut Place) {
-        let bias = sampler.bias();
+        let bias = sampler.early_bias();
         for axis in 0..2 {
             let scale = 256.0 * f64::from(sampler.sides[axis]);
             let out = &mut place.at[axis][lanes.clone()];
@@ -154,7 +162,7 @@ impl Coordinates {
     /// TEX-15: floors of quotients of two linear functions.
     #[inline(always)]
     fn divided(&self, sampler: &Sampler, weights: LaneWeights<'_>, lanes: Range<usize>, place: &mut Place) {
-        let bias = sampler.bias();
+        let bias = sampler.early_bias();
         let scales = sampler.sides.map(|side| 256.0 * f64::from(side));
         let [s, t, q] = &self.numbers;
         let outs = place.at.each_mut().map(|at| &mut at[lanes.clone()]);
@@ -193,7 +201,7 @@ impl Coordinates {
 /// TEX-12: the face of each lane, and the floors of where it samples on it, from its direction.
 #[inline(always)]
 fn on_faces(sampler: &Sampler, lanes: Range<usize>, place: &mut Place) {
-    let (bias, middle) = (sampler.bias(), 128.0 * f64::from(sampler.sides[0]));
+    let (bias, middle) = (sampler.early_bias(), 128.0 * f64::from(sampler.side_of_face()));
     let Place { at: [u, v], images, direction: [x, y, z], .. } = place;
     let (u, v, images) = (&mut u[lanes.clone()], &mut v[lanes.clone()], &mut images[lanes.clone()]);
     let (x, y, z) = (&x[lanes.clone()], &y[lanes.clone()], &z[lanes.clone()]);

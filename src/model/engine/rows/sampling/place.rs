@@ -5,6 +5,7 @@ use super::levels::MipFetches;
 use super::pairs::Pair;
 use super::sampler::Sampler;
 use crate::engine::rows::lanes::{PerLane, limited};
+use crate::texture::other_kind::{ZERO_VECTOR, on_face, on_plane};
 use std::ops::Range;
 
 /// Largest magnitude of a coordinate in 1/65536 texel from which levels of detail follow. Beyond it nothing is told apart (TEX-11).
@@ -47,6 +48,31 @@ impl Place {
             for n in 0..at.len() {
                 at[n] = limited(fine[n] * (1.0 / 256.0)) - bias;
             }
+        }
+    }
+}
+
+/// TEX-20: takes u and v of a sampler, without a bias, from a two-dimensional image to a face, or from a face to a two-dimensional image.
+/// `is_zero` says whether a lane's direction is the zero vector.
+#[inline(always)]
+pub(crate) fn change_kind(
+    at: &mut [PerLane<i32>; 2],
+    sampler: &Sampler,
+    lanes: Range<usize>,
+    is_zero: impl Fn(usize) -> bool,
+) {
+    let (bias, longest) = (sampler.bias(), sampler.side_of_face() / 2);
+    for (axis, at) in at.iter_mut().enumerate() {
+        let side = sampler.sides[axis];
+        for n in lanes.clone() {
+            let u = if !sampler.direction {
+                on_face(at[n], side as i32, 8)
+            } else if is_zero(n) {
+                ZERO_VECTOR[axis] as i32
+            } else {
+                on_plane(at[n], longest as i32, 8) >> (longest.ilog2() - side.ilog2())
+            };
+            at[n] = u - bias;
         }
     }
 }

@@ -15,7 +15,10 @@ pub(crate) struct Sampler {
     pub(crate) unit: usize,
     /// Whether it reads footprints of four texels.
     pub(crate) filters: bool,
+    /// Whether it has faces.
     pub(crate) cube: bool,
+    /// Whether its coordinates are a direction.
+    pub(crate) direction: bool,
     /// Sides of the image in texels; 1 if coordinates are given in texels.
     pub(crate) sides: [u32; 2],
     pub(crate) signed: [bool; 4],
@@ -61,6 +64,7 @@ impl Sampler {
             unit: unit.index,
             filters: unit.state.mag_filter == Filter::Linear,
             cube: unit.kind == TextureKind::Cube,
+            direction: unit.takes_direction(),
             sides: unit.scale(&unit.levels[0]),
             signed: [0, 1, 2, 3].map(|n| holds_double(unit, n)),
             mixes: unit.needs_lod(),
@@ -78,6 +82,22 @@ impl Sampler {
     /// Returns what is subtracted from coordinates, in 1/256 texel: half a texel if the sampler filters a single level.
     pub(crate) fn bias(&self) -> i32 {
         if self.filters && !self.mixes { 128 } else { 0 }
+    }
+
+    /// Returns whether its coordinates are those of another kind than the image (TEX-20).
+    pub(crate) fn is_other_kind(&self) -> bool {
+        self.cube != self.direction
+    }
+
+    /// Returns the [bias](Self::bias), or 0 if coordinates are not yet those of the image.
+    pub(crate) fn early_bias(&self) -> i32 {
+        if self.is_other_kind() { 0 } else { self.bias() }
+    }
+
+    /// Returns the side of the face on which directions lie. A two-dimensional image takes one of twice its longer side.
+    pub(crate) fn side_of_face(&self) -> u32 {
+        let [width, height] = self.sides;
+        if self.cube { width } else { 2 * width.max(height) }
     }
 
     /// Returns whether it has faces or layers.

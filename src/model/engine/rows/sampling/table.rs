@@ -250,9 +250,9 @@ fn images(unit: &PlannedUnit) -> Vec<Option<usize>> {
 }
 
 /// Returns the axes of the levels of a unit: of level 0, or of all levels if it needs a level of detail. Returns `None` if rows cannot
-/// sample it (levels or several taps of a volume or of depths).
+/// sample it (levels or several taps of a volume or of depths, or levels where coordinates are those of another kind).
 pub(crate) fn axes(unit: &PlannedUnit) -> Option<Vec<[Axis; 2]>> {
-    let single = (unit.kind == TextureKind::ThreeDimensional) || unit.state.shadow.is_some();
+    let single = unit.kind == TextureKind::ThreeDimensional || unit.state.shadow.is_some() || unit.is_other_kind();
     if single && (unit.needs_lod() || unit.state.anisotropy > 1) {
         return None;
     }

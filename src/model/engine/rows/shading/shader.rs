@@ -62,11 +62,13 @@ const FARTHEST_MOVE: f64 = (1_u32 << 30) as f64;
 pub(crate) fn is_dependent(operation: &ShaderOperation) -> bool {
     use ShaderOperation as O;
     match operation {
-        O::None | O::PassThrough | O::CullFragment { .. } | O::Sample | O::DotProduct => false,
+        O::None | O::PassThrough | O::CullFragment { .. } | O::DotProduct => false,
+        O::Sample | O::Sample2D | O::SampleCube => false,
         O::BumpEnvironment { .. }
         | O::DependentAlphaRed
         | O::DependentGreenBlue
         | O::DotProduct2D
+        | O::DotProduct3D
         | O::DotProductCube
         | O::DotReflectDiffuse
         | O::DotReflectSpecular

@@ -187,3 +187,65 @@ fn dependent_reads_with_levels_are_those_of_the_definition() {
     println!("{pixels} pixels, {defined} of them by the scalar engine");
     assert!(defined * 10 < pixels);
 }
+
+/// Compares textures of another kind than their stage (TEX-20), which the definition draws for levels only. Sides of flat ones differ.
+#[test]
+fn textures_of_another_kind_are_those_of_the_definition() {
+    use ShaderOperation as O;
+    let mut random = Random::seeded(0x94d0_49bb_1331_11eb);
+    let eye = O::DotReflectConstantEye { eye: [0.5, -0.25, 1.0] };
+    let programs = [
+        [O::SampleCube, O::Sample2D, O::SampleCube, O::Sample2D],
+        [O::Sample, O::DotProduct, O::DotProduct, O::DotProductCube],
+        [O::Sample, O::DotProduct, O::DotProduct, O::DotReflectSpecular],
+        [O::Sample, O::DotProduct, O::DotReflectDiffuse, eye],
+        [O::Sample, O::DotProduct, O::DotProduct, O::DotProduct3D],
+    ];
+    let (mut pixels, mut defined) = (0, 0);
+    for round in 0..60 {
+        let small = round % 3 == 0;
+        let mut vertices: Vec<Vertex> =
+            (0..if small { 256 } else { 4 }).flat_map(|_| triangle(&mut random, small)).collect();
+        let (program, has_faces) = (programs[round % programs.len()], (round / programs.len()).is_multiple_of(2));
+        for vertex in &mut vertices {
+            match program[0] {
+                O::SampleCube => {
+                    let [plane, direction, ratio, _] = vertex.texture_coordinates;
+                    vertex.texture_coordinates = [direction, ratio, ratio, plane];
+                }
+                _ => {
+                    for set in &mut vertex.texture_coordinates[1..] {
+                        *set = [0; 4].map(|_| if round % 4 == 0 { wild(&mut random) } else { random.unit() - 0.5 });
+                        set[3] *= if has_faces && program[3] == O::DotProduct3D { 0.0 } else { 1.0 };
+                    }
+                }
+            }
+        }
+        let filter = random.of(&[Filter::Linear, Filter::Nearest]);
+        let mut scene = scene(vertices, filter, DepthFormat::Z24S8, None, [false; 2], (Third::Nothing, false, 1));
+        let side = random.of(&[32, 64, 128]);
+        if let TextureImage::Texels(texels) = &mut scene.textures[0].image {
+            (texels.width, texels.height) = (side, 64 * 64 / side);
+        }
+        let draw = &mut scene.draws[0];
+        let mode = random.of(AddressMode::ALL);
+        let [flat, cube, ..] = draw.textures;
+        let flat = flat.map(|unit| TextureUnit { address_s: mode, border_color: [9, 200, 77, 255], ..unit });
+        draw.textures = program.map(|operation| match operation {
+            O::Sample2D => cube,
+            O::DotProduct3D if has_faces => cube,
+            operation => flat.filter(|_| operation.samples()),
+        });
+        draw.texture_shader = std::array::from_fn(|n| ShaderStage {
+            operation: program[n],
+            previous: 0,
+            mapping: random.of(DotMapping::ALL),
+            ..ShaderStage::conventional(n, true)
+        });
+        let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
+        let (drawn, by_definition) = compare(&plan, &format!("{program:?}, round {round}"));
+        (pixels, defined) = (pixels + drawn, defined + by_definition);
+    }
+    println!("{pixels} pixels, {defined} of them by the scalar engine");
+    assert!(defined < pixels / 2);
+}

@@ -11,7 +11,7 @@ use crate::engine::rows::geometry::weights::Pixels;
 use crate::engine::rows::lanes::{Lanes, PerLane, floor_of_sum, larger, smaller};
 use crate::engine::rows::sampling::fetch::{Reader, SampleUnit, Workspace};
 use crate::engine::rows::sampling::filter::Filter;
-use crate::engine::rows::sampling::place::{FARTHEST, Place};
+use crate::engine::rows::sampling::place::{FARTHEST, Place, change_kind};
 use crate::engine::rows::sampling::quads::Quads;
 use crate::engine::rows::sampling::sampler::Sampler;
 use crate::plan::PlannedDraw;
@@ -101,7 +101,7 @@ impl Stages<'_> {
                         }
                     }
                 }
-                ShaderOperation::Sample => {
+                operation if operation.samples_own() => {
                     let Some(at) = stage.sampler else { continue };
                     self.sample(at);
                 }
@@ -168,37 +168,65 @@ impl Stages<'_> {
                     }
                 }
             }
-            ShaderOperation::DotProduct2D => {
+            ShaderOperation::DotProduct2D | ShaderOperation::DotProduct3D => {
+                let first = if operation == ShaderOperation::DotProduct2D { index - 1 } else { index - 2 };
                 for n in 0..2 {
-                    self.dot_product(shader, index + n - 1, dotted);
-                    let floats = self.workshop.dot.dots[index + n - 1].block();
-                    self.places[at].set_floats(n, lanes, floats, sampler.sides[n]);
+                    self.dot_product(shader, first + n, dotted);
+                    let floats = self.workshop.dot.dots[first + n].block();
+                    if sampler.cube {
+                        self.places[at].set_ends(n, lanes, floats, sampler.sides[n]);
+                    } else {
+                        self.places[at].set_floats(n, lanes, floats, sampler.sides[n]);
+                    }
                 }
             }
             _ => {
                 for n in 1..4 {
                     self.dot_product(shader, n, dotted);
                 }
-                let Some((vector, scratch)) = self.workshop.vector(lanes, stage.eye) else { return };
-                let Place { at: uv, images, fine, direction, .. } = &mut self.places[at];
-                let ([u, v], faces) = (uv.each_mut().map(PerLane::block_mut), images.block_mut());
-                dot::on_faces(lanes, vector, (sampler.sides[0], sampler.bias()), scratch, u, v, faces);
-                if sampler.takes_quads() {
-                    for (from, to) in uv.iter().zip(fine) {
-                        for n in 0..lanes.count() {
-                            to[n] = 256.0 * f64::from(from[n]);
-                        }
-                    }
-                    for (from, to) in vector.into_iter().zip(direction) {
-                        for n in 0..lanes.count() {
-                            to[n] = f64::from(from[n]);
-                        }
-                    }
-                }
+                self.face(at, stage.eye);
                 return;
             }
         }
         self.places[at].settle(0..lanes.count(), sampler.bias());
+    }
+
+    /// Computes where a sampler samples in a direction of the dot unit, reflected if there is an eye vector.
+    #[inline(always)]
+    fn face(&mut self, at: usize, eye: Option<[Number; 3]>) {
+        let (lanes, sampler) = (self.work.lanes, &self.compiled.samplers[at]);
+        let Some((mut vector, scratch)) = self.workshop.vector(lanes, eye) else { return };
+        let Place { at: uv, images, fine, direction, .. } = &mut self.places[at];
+        let ([u, v], faces) = (uv.each_mut().map(PerLane::block_mut), images.block_mut());
+        // TEX-20: t lies the other way round where y changes its sign.
+        let turned;
+        if sampler.is_other_kind() {
+            let mut y = PerLane::<f32>::default();
+            for n in 0..lanes.count() {
+                y[n] = -vector[1][n];
+            }
+            turned = y;
+            vector[1] = turned.block();
+        }
+        let (side, bias) = (sampler.side_of_face(), sampler.early_bias());
+        dot::on_faces(lanes, vector, (side, bias), scratch, u, v, faces);
+        if sampler.is_other_kind() {
+            let majors = &self.workshop.dot.scratch[2];
+            change_kind(uv, sampler, 0..lanes.count(), |n| majors[n] <= 0.0);
+            return;
+        }
+        if sampler.takes_quads() {
+            for (from, to) in uv.iter().zip(fine) {
+                for n in 0..lanes.count() {
+                    to[n] = 256.0 * f64::from(from[n]);
+                }
+            }
+            for (from, to) in vector.into_iter().zip(direction) {
+                for n in 0..lanes.count() {
+                    to[n] = f64::from(from[n]);
+                }
+            }
+        }
     }
 
     /// TSH-4: computes the dot product of a stage, unless it is known already.
@@ -252,6 +280,16 @@ impl Place {
             // NaN counts as 0.
             let t = if floats[n].is_nan() { 0.0 } else { f64::from(floats[n]) * scale };
             fine[n] = smaller(larger(t.floor(), -FARTHEST), FARTHEST);
+        }
+    }
+
+    /// TEX-20: takes the ends of a face that signs of results of the dot unit choose.
+    #[inline(always)]
+    fn set_ends(&mut self, axis: usize, lanes: Lanes, floats: &Floats, side: u32) {
+        let (last, fine) = (65536.0 * f64::from(side), self.fine[axis].block_mut());
+        for n in 0..lanes.count() {
+            let is_last = if axis == 0 { floats[n] < 0.0 } else { floats[n] > 0.0 };
+            fine[n] = if is_last { last } else { 0.0 };
         }
     }
 }
