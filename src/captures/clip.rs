@@ -113,7 +113,7 @@ pub(super) fn surface_clip(frames: &mut Frames) {
             [("", SurfaceFormat::R5G6B5), ("_B8", SurfaceFormat::B8), ("_G8B8", SurfaceFormat::G8B8)]
         {
             let view = scene(vec![Target::new(SIZE.0, SIZE.1, format)], vec![], image(area, area));
-            let drawn = FrameDrawing { scene: of(vec![]), before: vec![], view: Some(view), shown: Buffer::Color };
+            let drawn = FrameDrawing { view: Some(view), ..FrameDrawing::colors(of(vec![])) };
             frames.push(format!("{name}{suffix}"), drawn);
         }
         // On a texture, the programs replace a clip width or height of 0 by the whole width or height.

@@ -28,6 +28,12 @@ pub(super) fn each_texel([width, height]: [u32; 2]) -> impl Iterator<Item = (u32
     (0..height).flat_map(move |y| (0..width).map(move |x| (x, y)))
 }
 
+/// Returns the index of a texel in a swizzled texture, which interleaves the bits of its coordinates. `bits` is the number of bits of each.
+pub(super) fn swizzled<const N: usize>(at: [u32; N], bits: [u32; N]) -> usize {
+    let in_turn = (0..8).flat_map(|bit| (0..N).filter(move |n| bit < bits[*n]).map(move |n| at[n] >> bit & 1));
+    in_turn.enumerate().map(|(place, bit)| (bit as usize) << place).sum()
+}
+
 /// Returns the texel words of an image, row by row from the top.
 pub(super) fn words(format: TextureFormat, size: [u32; 2], image: impl Image) -> Vec<u32> {
     each_texel(size).map(|(x, y)| texels::word(image(x, y), format)).collect()

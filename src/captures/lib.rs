@@ -22,6 +22,7 @@ mod faces;
 mod fog;
 mod fog_carryover;
 mod images;
+mod kinds;
 mod lighting;
 mod lights;
 mod lines;
@@ -38,6 +39,7 @@ mod shadow;
 mod space;
 mod specular;
 mod stencil;
+mod swizzle;
 mod table;
 mod texel_formats;
 mod texgen;
@@ -80,6 +82,8 @@ struct FrameDrawing {
     scene: Scene,
     /// Scenes that are drawn first. The memory of the first target of each becomes the texels of the texture of the same number.
     before: Vec<Scene>,
+    /// Whether these targets are swizzled in memory.
+    is_swizzled: bool,
     /// Draws on the frame buffer's memory in a narrower format. Each row begins at the same address as before.
     view: Option<Scene>,
     /// The buffer that the capture shows: words of depth and stencil as A8R8G8B8, 16-bit words as R5G6B5.
@@ -89,7 +93,7 @@ struct FrameDrawing {
 impl FrameDrawing {
     /// Returns a frame that shows the colours of a scene's first target.
     fn colors(scene: Scene) -> FrameDrawing {
-        FrameDrawing { scene, before: Vec::new(), view: None, shown: Buffer::Color }
+        FrameDrawing { scene, before: Vec::new(), is_swizzled: false, view: None, shown: Buffer::Color }
     }
 }
 
@@ -226,9 +230,12 @@ const SUITES: &[Suite] = &[
     ("Stipple_tests", lines::stipples),
     ("Surface_clip", clip::surface_clip),
     ("Surface_format", blend::surface_formats),
+    ("Surface_pitch", swizzle::frames),
     ("Texgen", texgen::generation),
     ("Texgen_with_texture_matrix", texgen::generation_and_matrices),
     ("TextureWrapMode", sampling::wrap_modes),
+    ("Texture_2D_as_cubemap", kinds::planes_as_cubes),
+    ("Texture_3D_as_2D", kinds::solids_as_planes),
     ("Texture_CPU_Update", transfers::updates),
     ("Texture_DXT", texel_formats::compressed),
     ("Texture_Framebuffer_Blit", transfers::blits),
@@ -337,7 +344,7 @@ impl Frame {
         let mut drawn = (self.make)();
         for (before, texture) in std::mem::take(&mut drawn.before).iter().zip(&mut drawn.scene.textures) {
             let frames = render(&planned(before, policies)?, options);
-            put_memory(&frames.surfaces[0], texture);
+            put_memory(&frames.surfaces[0], drawn.is_swizzled, texture);
         }
         Ok(drawn)
     }
@@ -427,13 +434,13 @@ impl PreparedFrame {
         mask: Mask<'_>,
         mut draw: impl FnMut(&Scene, &Plan, Mask<'_>) -> Result<Rendered, E>,
     ) -> Result<Vec<[u8; 4]>, E> {
-        let FrameDrawing { scene, before, view, shown } = &self.drawn;
+        let FrameDrawing { scene, before, is_swizzled, view, shown } = &self.drawn;
         let (mut scene, mut main) = (Cow::Borrowed(scene), Cow::Borrowed(&self.main));
         if !before.is_empty() {
             for (n, (before, plan)) in before.iter().zip(&self.before).enumerate() {
                 let frames = draw(before, plan, None)?;
                 if let Some(texture) = scene.to_mut().textures.get_mut(n) {
-                    put_memory(&frames.surfaces[0], texture);
+                    put_memory(&frames.surfaces[0], *is_swizzled, texture);
                 }
             }
             main = Cow::Owned(planned(&scene, self.policies)?);

@@ -1,5 +1,6 @@
 //! Surfaces as the memory that they are, and as captured pictures show them.
 
+use super::images::{each_texel, swizzled};
 use ninebit::frame::Surface;
 use ninebit::state::{SurfaceFormat, Texture, TextureImage};
 
@@ -9,13 +10,20 @@ pub(super) fn shown_as_565(word: u32) -> [u8; 4] {
     [channel(word >> 11, [255, 31]), channel(word >> 5 & 63, [97, 24]), channel(word & 31, [255, 31]), 255]
 }
 
-/// Puts the beginning of a surface's memory into a texture of 32-bit texels.
-pub(super) fn put_memory(surface: &Surface, texture: &mut Texture) {
+/// Puts the beginning of a surface's memory, which may be swizzled, into a texture of 32-bit texels.
+pub(super) fn put_memory(surface: &Surface, is_swizzled: bool, texture: &mut Texture) {
     let TextureImage::Texels(texels) = &mut texture.image else { return };
-    let bytes = surface.format.bytes() as usize;
-    let memory: Vec<u8> = surface.words.iter().flat_map(|word| word.to_le_bytes().into_iter().take(bytes)).collect();
+    let (bytes, bits) = (surface.format.bytes() as usize, [surface.width, surface.height].map(u32::ilog2));
+    let mut words = surface.words.clone();
+    if is_swizzled {
+        for (at, (x, y)) in each_texel([surface.width, surface.height]).enumerate() {
+            words[swizzled([x, y], bits)] = surface.words[at];
+        }
+    }
+    let memory: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes().into_iter().take(bytes)).collect();
     let words = memory.as_chunks().0.iter().map(|four| u32::from_le_bytes(*four));
-    texels.words = words.take(texels.words.len()).collect();
+    let rest = texels.words.iter().skip(words.len()).copied();
+    texels.words = words.take(texels.words.len()).chain(rest).collect();
 }
 
 /// Reads the beginning of each row of 32-bit words as words of a narrower format, as many in a row.

@@ -84,7 +84,7 @@ fn words(format: TextureFormat) -> Vec<u32> {
             return (0..LAYERS).flat_map(|z| texel_formats::packed(format, [SIDE; 2], layer(z))).collect();
         }
     };
-    let place = |x, y, z| texel_formats::swizzled([x, y, z], [8, 8, 2]);
+    let place = |x, y, z| images::swizzled([x, y, z], [8, 8, 2]);
     let mut memory = vec![0; (4 * SIDE * SIDE * LAYERS) as usize];
     for z in 0..LAYERS {
         let image = layer(z);

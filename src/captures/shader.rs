@@ -36,7 +36,7 @@ fn homogeneous([x, y, z]: [f32; 3]) -> [f32; 4] {
 }
 
 /// Draws the front faces of both cubes. `coordinates` returns the texture coordinates of a vertex, given its model, face and corner.
-fn cubes(
+pub(super) fn cubes(
     canvas: &mut Canvas,
     coordinates: impl Fn(&Matrix, [usize; 2]) -> [[f32; 4]; TEXTURE_UNITS],
     state: impl Fn(Draw) -> Draw,
@@ -95,7 +95,7 @@ fn radial() -> Texture {
 
 /// The eye vector that the programs pass in q of the coordinates.
 #[derive(Clone, Copy)]
-enum Eye {
+pub(super) enum Eye {
     /// All components are 1; the operation does not read it.
     Unread,
     /// The unit vector from the eye to the vertex.
@@ -125,7 +125,13 @@ fn stage(number: usize, operation: ShaderOperation, mapping: DotMapping) -> Shad
 }
 
 /// Draws the cubes with a texture shader that ends in `operation`.
-fn dotted(canvas: &mut Canvas, operation: ShaderOperation, mapping: DotMapping, eye: Eye, textures: [&Texture; 2]) {
+pub(super) fn dotted(
+    canvas: &mut Canvas,
+    operation: ShaderOperation,
+    mapping: DotMapping,
+    eye: Eye,
+    textures: [&Texture; 2],
+) {
     let [normals, cube] = textures.map(|texture| nearest(canvas.texture(texture)));
     let state = |mut draw: Draw| {
         let is_diffuse = operation == ShaderOperation::DotReflectDiffuse;
@@ -148,20 +154,28 @@ fn dotted(canvas: &mut Canvas, operation: ShaderOperation, mapping: DotMapping, 
     cubes(canvas, |model, corner| surface(model, eye, corner), state);
 }
 
+/// Returns the unfolded normal map.
+pub(super) fn normals() -> Texture {
+    images::texture(TextureFormat::A8B8G8R8, [256, 256], assets::pixels(assets::NORMALS))
+}
+
+/// Returns coordinates that are the corners of a cube, with this q.
+pub(super) fn along(q: f32) -> impl Fn(&Matrix, [usize; 2]) -> [[f32; 4]; TEXTURE_UNITS] {
+    move |_, [face, corner]| {
+        let [x, y, z] = CUBE[face][corner];
+        [[x, y, z, q]; TEXTURE_UNITS]
+    }
+}
+
 /// Adds the frames of Texture_cubemap.
 pub(super) fn cube_maps(frames: &mut Frames) {
     let [checks, radial] = [chequered(), radial()].map(Arc::new);
-    let normals = images::texture(TextureFormat::A8B8G8R8, [256, 256], assets::pixels(assets::NORMALS));
-    let normals = Arc::new(normals);
-    for (name, q) in [("0.0", 0.0), ("-0.0", -0.0), ("1.0", 1.0), ("-1.0", -1.0)] {
+    let normals = Arc::new(normals());
+    for (name, q) in [("", 1.0), ("_q0.0", 0.0), ("_q-0.0", -0.0), ("_q1.0", 1.0), ("_q-1.0", -1.0)] {
         let checks = Arc::clone(&checks);
-        frames.paint(format!("Cubemap_q{name}"), 0xfe12_1212, move |canvas| {
+        frames.paint(format!("Cubemap{name}"), 0xfe12_1212, move |canvas| {
             canvas.texture(&checks);
-            let along = |_: &Matrix, [face, corner]: [usize; 2]| {
-                let [x, y, z] = CUBE[face][corner];
-                [[x, y, z, q]; TEXTURE_UNITS]
-            };
-            cubes(canvas, along, |draw| fetching(draw, 3, nearest(0)));
+            cubes(canvas, along(q), |draw| fetching(draw, 3, nearest(0)));
         });
     }
     for (name, mapping) in named("0to1 -1to1D3D -1to1GL -1to1 HiLo_1 HiLoHemi") {
@@ -181,6 +195,7 @@ pub(super) fn cube_maps(frames: &mut Frames) {
             make(format!("DotReflectConst_{axis}"), constant(eye), Eye::Unread, &checks);
         }
     }
+    super::kinds::volume_products(frames);
 }
 
 /// Returns the texture coordinates of a rectangle's four corners.

@@ -1,7 +1,7 @@
 //! TEX-1 to TEX-4, TEX-9, TEX-18, TEX-19: texel formats, palettes, signed channels, mip levels and conversion from YUV.
 
 use super::*;
-use images::{Color, Image, bulge, gradient, grey};
+use images::{Color, Image, bulge, gradient, grey, swizzled};
 
 /// Returns a textured square of two triangles, transformed by the vertex program. `side` is the texture coordinate of its far edges.
 fn square(side: f32, unit: TextureUnit) -> Draw {
@@ -111,12 +111,6 @@ fn unit(canvas: &mut Canvas, (texture, palette): Pictured) -> (TextureUnit, f32)
     let palette = (!palette.is_empty()).then(|| canvas.palette(palette.into_iter()));
     let side = if texture.kind == TextureKind::Rectangle { SIDE as f32 } else { 1.0 };
     (TextureUnit { palette, ..nearest(canvas.texture(&texture)) }, side)
-}
-
-/// Returns the index of a texel in a swizzled texture, which interleaves the bits of its coordinates. `bits` is the number of bits of each.
-pub(super) fn swizzled<const N: usize>(at: [u32; N], bits: [u32; N]) -> usize {
-    let in_turn = (0..8).flat_map(|bit| (0..N).filter(move |n| bit < bits[*n]).map(move |n| at[n] >> bit & 1));
-    in_turn.enumerate().map(|(place, bit)| (bit as usize) << place).sum()
 }
 
 /// Returns the 32-bit gradient, whose memory is read as if every byte were a texel. Its bytes are alpha, red, green, blue from the lowest on.
