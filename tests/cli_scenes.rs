@@ -93,3 +93,14 @@ fn misspelt_files_have_similar_ones() {
     bench.run("check textured.ron").failed(4, "help: did you mean `maps/rocks.png`?");
     bench.run("diff maps/rockz.png maps/rocks.png").failed(4, "did you mean `maps/rocks.png`?");
 }
+
+#[test]
+fn smooth_edges_are_not_printed() {
+    let bench = Bench::new();
+    bench.write("smooth.ron", SCENE.replace("vertices:", "smooth_polygons: true, vertices:"));
+    for options in ["--to c99", "--whole --to wgsl"] {
+        let help = "error[NB0402]: the smooth edges of draw 0 are not printed";
+        bench.run(&format!("lower smooth.ron {options}")).failed(3, help);
+    }
+    assert_eq!(bench.run("lower smooth.ron --to c99 --fragment").status, 0);
+}

@@ -132,6 +132,7 @@ fn random_scenes_agree() {
             need(group, Filter::NAMES);
         }
         need("lod", &["least", "measured"]);
+        need("samples", &["of a centre inside", "of a centre outside"]);
         if random_scene::FOG_FUNCTIONS {
             need(FogMode::TYPE, FogMode::NAMES);
         }

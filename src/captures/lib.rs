@@ -36,6 +36,7 @@ mod rounding;
 mod sampling;
 mod shader;
 mod shadow;
+mod smooth;
 mod space;
 mod specular;
 mod stencil;
@@ -177,7 +178,7 @@ impl Frames {
 type Suite = (&'static str, fn(&mut Frames));
 
 const SUITES: &[Suite] = &[
-    ("3D_primitive", primitives::solids),
+    ("3D_primitive", smooth::solids),
     ("Alpha_func", blend::alpha_function),
     ("Antialiasing_tests", transfers::one_sample),
     ("Attrib_carryover", attributes::carryover),

@@ -321,33 +321,20 @@ const SOLIDS: [Shape; 10] = [
     ("Polygon", Topology::Polygon, POLYGON),
 ];
 
-/// Adds those frames of 3D_primitive that show nothing smooth. The way that vertices reach the chip changes no pixel.
-///
-/// The programs draw with smooth lines (`-ls`) and polygons (`-ps`) on a surface of two samples a pixel, and show the sample in the pixel's centre.
-pub(super) fn solids(frames: &mut Frames) {
-    for (name, topology, vertices) in SOLIDS {
-        let depth_test = Some(DepthTest::new(CompareFunction::Less, true));
+/// Returns the shapes of 3D_primitive with their names.
+pub(super) fn solids() -> impl Iterator<Item = (&'static str, Draw)> {
+    SOLIDS.into_iter().map(|(name, topology, vertices)| {
+        let depth_test = Some(in_steps(CompareFunction::Less, true, None));
         let lines = Lines { rasterization: LineRasterization::Bresenham, ..Lines::default() };
-        let shape = Draw { depth_test, lines, ..draw(topology, vertices.iter().map(solid).collect()) };
-        let drawn = one(0xff30_3030, None, shape);
-        let unaffected: &[&str] = match topology {
-            Topology::Points => &["", "-ls", "-ps", "-ls-ps"],
-            Topology::Lines | Topology::LineStrip | Topology::LineLoop => &["", "-ps"],
-            _ => &["", "-ls"],
-        };
-        for kind in ["", "-inlinebuf", "-inlinearrays", "-inlineelements"] {
-            for smooth in unaffected {
-                frames.push(format!("{name}{kind}{smooth}"), drawn.clone());
-            }
-        }
-    }
+        (name, Draw { depth_test, lines, ..draw(topology, vertices.iter().map(solid).collect()) })
+    })
 }
 
 /// Adds the frames of Zero_stride: colours that lie no bytes apart are all the first one.
 pub(super) fn one_color(frames: &mut Frames) {
     let diffuse = VertexColor::Floats([0.25, 0.25, 0.25, 1.0]);
     let vertex = |corner: &Corner| Vertex { diffuse, ..solid(corner) };
-    let depth_test = Some(DepthTest::new(CompareFunction::Less, true));
+    let depth_test = Some(in_steps(CompareFunction::Less, true, None));
     let shape = Draw { depth_test, ..draw(Topology::Triangles, TRIANGLES.iter().map(vertex).collect()) };
     let drawn = one(0xff30_3030, None, shape);
     for name in ["DrawArrays", "InlineElements"] {
@@ -355,10 +342,10 @@ pub(super) fn one_color(frames: &mut Frames) {
     }
 }
 
-/// Returns a vertex of the fixed function, and its colour.
+/// Returns a vertex of the fixed function, and its colour. The transform unit leaves fractions of a step of depth.
 fn solid([x, y, z, r, g, b, ..]: &Corner) -> Vertex {
     let [x, y, z, w] = space::fixed_function([*x, *y, *z, 1.0]);
-    Vertex { position: [x, y, z / 65535.0, w], diffuse: VertexColor::Floats([*r, *g, *b, 1.0]), ..Vertex::default() }
+    Vertex { position: [x, y, z, w], diffuse: VertexColor::Floats([*r, *g, *b, 1.0]), ..Vertex::default() }
 }
 
 /// The strip of Overlapping_draw_modes.

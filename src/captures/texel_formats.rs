@@ -294,36 +294,38 @@ pub(super) fn signed(frames: &mut Frames) {
     }
 }
 
-/// Adds the frames of Texture_signed_component_tests that blend ramps of each channel, unsigned and signed, with a chequered frame buffer.
+/// Adds the frames of Texture_signed_component_tests that blend ramps.
 fn blended_ramps(frames: &mut Frames) {
     for (name, equation) in [
         ("ADD", BlendEquation::Add),
         ("SADD", BlendEquation::SignedAdd),
         ("SREVSUB", BlendEquation::SignedReverseSubtract),
     ] {
-        frames.paint(format!("txt_A8R8G8B8_{name}"), 0, move |canvas| {
-            let fields = checker([abgr(0xffff_ffff), abgr(0xff7f_7f7f)], 12);
-            canvas.frame_buffer().contents =
-                Some(images::words(TextureFormat::A8B8G8R8, super::SIZE.into(), fields).into());
-            let sections = places([64.0, 0.0], [256.0, 240.0], 2);
-            for (channel, [left, top]) in (0..TEXTURE_UNITS).zip(sections) {
-                let bands = [(0xff, false), (0xff, true), (0x7f, false), (0x7f, true)];
-                for ((alpha, signed), n) in bands.into_iter().zip(0_u8..) {
-                    let ramp = move |x: u32, _| {
-                        let mut color = if channel == 3 { [255; 4] } else { [0, 0, 0, alpha] };
-                        color[channel] = x as u8;
-                        color
-                    };
-                    let texture = canvas.texture(&images::texture(TextureFormat::A8R8G8B8, [256; 2], ramp));
-                    let signed = std::array::from_fn(|n| signed && (n == channel));
-                    let unit = TextureUnit { signed, ..nearest(texture) };
-                    let band = sized([left, top + 60.0 * f32::from(n)], [256.0, 60.0]);
-                    let blend = OVER.map(|blend| Blend { equation, ..blend });
-                    let combiners = program(SPARE);
-                    canvas.draw(Draw { blend, combiners, ..pasted(band, 0, unit, WHOLE) });
-                }
-            }
-        });
+        frames.paint(format!("txt_A8R8G8B8_{name}"), 0, move |canvas| blend_ramps(canvas, equation));
+    }
+}
+
+/// Blends ramps of each channel, unsigned and signed, with a chequered frame buffer.
+pub(super) fn blend_ramps(canvas: &mut Canvas, equation: BlendEquation) {
+    let fields = checker([abgr(0xffff_ffff), abgr(0xff7f_7f7f)], 12);
+    canvas.frame_buffer().contents = Some(images::words(TextureFormat::A8B8G8R8, super::SIZE.into(), fields).into());
+    let sections = places([64.0, 0.0], [256.0, 240.0], 2);
+    for (channel, [left, top]) in (0..TEXTURE_UNITS).zip(sections) {
+        let bands = [(0xff, false), (0xff, true), (0x7f, false), (0x7f, true)];
+        for ((alpha, signed), n) in bands.into_iter().zip(0_u8..) {
+            let ramp = move |x: u32, _| {
+                let mut color = if channel == 3 { [255; 4] } else { [0, 0, 0, alpha] };
+                color[channel] = x as u8;
+                color
+            };
+            let texture = canvas.texture(&images::texture(TextureFormat::A8R8G8B8, [256; 2], ramp));
+            let signed = std::array::from_fn(|n| signed && (n == channel));
+            let unit = TextureUnit { signed, ..nearest(texture) };
+            let band = sized([left, top + 60.0 * f32::from(n)], [256.0, 60.0]);
+            let blend = OVER.map(|blend| Blend { equation, ..blend });
+            let combiners = program(SPARE);
+            canvas.draw(Draw { blend, combiners, ..pasted(band, 0, unit, WHOLE) });
+        }
     }
 }
 

@@ -211,7 +211,7 @@ impl Bins {
 fn mask(context: &TriangleContext<'_>, spans: &[(i64, i64); TILE as usize], [left, top]: [i64; 2]) -> Mask {
     let mut mask = [0; 8];
     for (row, (from, to)) in spans.iter().enumerate() {
-        let is_in = |i: &i64| !context.is_stippled(*i, top + row as i64);
+        let is_in = |i: &i64| !context.is_left_out(*i, top + row as i64);
         for i in ((*from).max(left)..(*to).min(left + SIDE)).filter(is_in) {
             let bit = row * TILE as usize + (i - left) as usize;
             mask[bit / 32] |= 1 << (bit % 32);

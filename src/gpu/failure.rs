@@ -48,6 +48,18 @@ impl Failure {
         Failure::Message { code: Some("NB1702"), exit: 5, message, help }
     }
 
+    /// Returns whether a draw has smooth edges, which are not printed.
+    pub fn is_unprinted(&self) -> bool {
+        matches!(self, Failure::Message { code: Some("NB0402"), .. })
+    }
+
+    /// Returns the failure for a draw with smooth edges, which are not printed.
+    pub(crate) fn smooth_edges(draw: usize) -> Failure {
+        let message = format!("the smooth edges of draw {draw} are not printed");
+        let help = "leave `smooth_polygons` and `RectangularSmooth` out, or draw it with `ninebit render`".to_string();
+        Failure::Message { code: Some("NB0402"), exit: 3, message, help }
+    }
+
     /// Returns the failure for what the driver says.
     pub(crate) fn driver(message: String) -> Failure {
         let help = "update the driver, or choose another adapter; report a refused shader".to_string();

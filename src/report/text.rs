@@ -216,10 +216,13 @@ pub(super) fn expression(step: &Step) -> String {
         "align_24" => format!("{}, to 24 bits of the largest", name(0)),
         "number_sum" => format!("{} + {} + {}", name(0), name(1), name(2)),
         "floor_weight" => format!("floor(256 {})", name(0)),
+        "signed_weight" => format!("256 {}, toward zero", name(0)),
+        "cover" => format!("floor({} * {} / 8)", value(0), value(1)),
         "remainder_weight" => format!("256 - {} - {}", value(0), value(1)),
-        "interpolate" => {
+        "interpolate" | "interpolate_within" => {
             let products = [0, 1, 2].map(|n| format!("{} * {}", value(n), value(n + 3)));
-            format!("({} + 128) >> 8", products.join(" + "))
+            let limits = if step.operation == "interpolate" { "" } else { ", within the three colours" };
+            format!("({} + 128) >> 8{limits}", products.join(" + "))
         }
         "floor_coordinate" => format!("floor(256 * {} * {})", value(1), name(0)),
         "quad_coordinate" => format!("floor(65536 * {} * {})", value(1), name(0)),

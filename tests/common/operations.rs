@@ -21,6 +21,8 @@ pub const OPERATIONS: &[(&str, &str, u32, &[&str])] = &[
     ("sprite-coordinate", "a distance and a size, by the side of a picture", 22, &["sprite-coordinate"]),
     ("polygon-edge", "a count of vertices, a triangle's number and an edge's", 14, &["polygon-edge"]),
     ("polygon-stipple", "a pixel of a pattern", 56, &[]),
+    ("smooth-coverage", "six positions, a pixel, an alpha", 107, &[]),
+    ("smooth-color", "three colours by two weights of any sign", 52, &[]),
     ("clip", "a pixel by the surface clip and two rectangles", 169, &[]),
     ("weights", "six positions, a pixel, three w", 111, &[]),
     ("linear", "two weights and three numbers", 154, &[]),

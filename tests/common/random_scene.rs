@@ -55,6 +55,20 @@ pub fn scene() -> BoxedStrategy<Scene> {
     Tape(PLAIN).prop_map(|tape| build(&tape)).prop_filter("RAS-0", fits).boxed()
 }
 
+/// Returns scenes like [`scene`]s, without smooth edges: they are not printed.
+pub fn sharp() -> BoxedStrategy<Scene> {
+    let sharp = |mut scene: Scene| {
+        for draw in &mut scene.draws {
+            draw.smooth_polygons = false;
+            if draw.lines.rasterization == LineRasterization::RectangularSmooth {
+                draw.lines.rasterization = LineRasterization::Rectangular;
+            }
+        }
+        scene
+    };
+    scene().prop_map(sharp).boxed()
+}
+
 /// A strategy for tapes of the given number of words.
 #[derive(Debug)]
 struct Tape(usize);
@@ -296,6 +310,7 @@ fn draw(c: &mut Choices<'_>, given: &SceneParts<'_>, n: u32) -> Draw {
         polygon_modes: PolygonModes::FILL,
         edge_flags: None,
         polygon_stipple: None,
+        smooth_polygons: false,
         lines: Lines::default(),
         point_size: 8,
         point_sizes: None,

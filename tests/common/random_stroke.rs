@@ -29,6 +29,7 @@ pub fn stroke(c: &mut Choices<'_>, (profile, textures): (Profile, &[Texture]), d
     }
     // No word of the tape, so that the other choices stay the same.
     draw.convert_yuv = profile == Profile::Nv2a && draw.blend_constant[3] % 5 == 1;
+    draw.smooth_polygons = draw.blend_constant[2] % 6 == 1;
     draw.point_sprite = c.once_in(2) && profile == Profile::Nv2a && can_be_sprite(textures, draw);
     (draw.lines, draw.point_size) = (Lines { width: size(c), rasterization: c.any() }, size(c));
     if c.once_in(3) {

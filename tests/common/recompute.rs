@@ -194,8 +194,14 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         "rest_24" | "number" | "number_product" | "align_24" | "number_sum" => weights::number(operation, inputs),
         "float_difference" => weights::number(operation, inputs),
         "floor_weight" => weights::floor(&[n(0)], 256, 256, 256),
+        "signed_weight" => weights::toward_zero(n(0), 256),
         "remainder_weight" => Number::new(256 - v(0) - v(1), 256),
         "interpolate" => byte((v(0) * v(3) + v(1) * v(4) + v(2) * v(5) + 128) >> 8),
+        "interpolate_within" => {
+            let sum = (v(0) * v(3) + v(1) * v(4) + v(2) * v(5) + 128) >> 8;
+            byte(sum.clamp(v(0).min(v(1)).min(v(2)), v(0).max(v(1)).max(v(2))))
+        }
+        "cover" => byte((v(0) * v(1)).div_euclid(8)),
         "floor_coordinate" => weights::floor(&[n(0)], 256 * v(1), 256, 1 << 24),
         "quad_coordinate" => weights::floor(&[n(0)], 65536 * v(1), 65536, 1 << 61),
         "floor_ratio" => weights::floor(&[n(0), n(1)], 256 * v(2), 256, 1 << 24),

@@ -173,6 +173,13 @@ pub fn floor(of: &[Number], scale: i128, per_one: i128, limit: i128) -> Number {
     Number::new(quotient(Exact { m: x.m * scale, e: x.e }, y, limit), per_one)
 }
 
+/// Returns scale x toward zero, as so many parts of 1.
+pub fn toward_zero(x: Number, scale: i128) -> Number {
+    let x = Exact::new(x);
+    let magnitude = quotient(Exact { m: x.m.abs() * scale, e: x.e }, Exact { m: 1, e: 0 }, i128::MAX);
+    Number::new(magnitude * x.m.signum(), scale)
+}
+
 /// Returns floor(x / y), limited.
 fn quotient(x: Exact, y: Exact, limit: i128) -> i128 {
     if y.m == 0 || x.m == 0 {

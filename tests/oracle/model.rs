@@ -81,10 +81,15 @@ fn render_draw(scene: &Scene, draw: &Draw, policies: &Policies, surfaces: &mut [
                 if !covered || clipped(draw, target, (i, j)) || (setup.is_filled() && !stroke::patterned(draw, i, j)) {
                     continue;
                 }
-                let sample = setup.sample(i.into(), j.into()).expect("a sum above 0 inside");
+                let sample = setup.drawn_sample(i.into(), j.into());
                 // TSH-10
                 let Some(textures) = units.registers(i.into(), j.into(), &sample) else { continue };
-                let color = shade(draw, textures, &setup, &sample, policies);
+                let mut color = shade(draw, textures, &setup, &sample, policies);
+                if let Some(samples) = setup.samples(i.into(), j.into()) {
+                    let is_outside = sample.edges.iter().any(|edge| *edge < 0);
+                    tally::count("samples", if is_outside { "of a centre outside" } else { "of a centre inside" });
+                    color[3] = color[3] * samples as i128 / 8;
+                }
                 let at = (j * u64::from(target.width) + i) as usize;
                 // The order is ROP-1, STN-1, DEP-2.
                 if let Some(test) = draw.alpha_test

@@ -4,8 +4,8 @@ use super::real::{Number, bits, color_byte, shift, split};
 use super::stroke::{self, Kind, Strokes};
 use super::weights;
 use ninebit::state::{
-    ClipDepth, Cull, DepthFormat, DepthTest, Draw, FrontFace, PolygonOffset, Positions, Profile, ProvokingVertex,
-    ShadeModel, Topology, Vertex, VertexColor, VertexDepths, Viewport,
+    ClipDepth, Cull, DepthFormat, DepthTest, Draw, FrontFace, LineRasterization, PolygonOffset, Positions, Profile,
+    ProvokingVertex, ShadeModel, Topology, Vertex, VertexColor, VertexDepths, Viewport,
 };
 
 /// RAS-6: vertices with a smaller w are clipped away.
@@ -285,6 +285,7 @@ pub struct Setup {
     pub vertices: [Vertex; 3],
     kind: Kind,
     strokes: Strokes,
+    is_smooth: bool,
     snapped: [[i128; 2]; 3],
     /// Twice the area of the triangle in units of 1/256 pixel, positive.
     area: i128,
@@ -325,7 +326,9 @@ impl Setup {
         let w = vertices.map(|v| Number::of(v.position[3]).cut(if profile == Profile::Nv10 { 16 } else { 24 }));
         let w = draw.perspective.then_some(w);
         let strokes = Strokes { lines: draw.lines, point_size };
-        Some(Setup { vertices, kind, strokes, snapped, area: cross.abs(), turn: cross.signum(), w })
+        let smooth_lines = draw.lines.rasterization == LineRasterization::RectangularSmooth;
+        let is_smooth = if kind == Kind::Triangle { draw.smooth_polygons } else { kind == Kind::Line && smooth_lines };
+        Some(Setup { vertices, kind, strokes, is_smooth, snapped, area: cross.abs(), turn: cross.signum(), w })
     }
 
     /// PNT-2: returns the distances of a pixel from a point, and the point's size.
@@ -345,7 +348,22 @@ impl Setup {
             let ends = [self.snapped[1], self.snapped[2]];
             return stroke::edges(&self.strokes, self.kind, ends, [i, j]);
         }
-        let (x, y) = (16 * i + 8, 16 * j + 8);
+        let (edges, covered) = self.edges_at(i, j, stroke::CENTRE);
+        (edges, self.samples(i, j).map_or(covered, |samples| samples > 0))
+    }
+
+    /// SMO-1: returns how many samples of a pixel are covered, or `None` without smooth edges.
+    pub fn samples(&self, i: i128, j: i128) -> Option<usize> {
+        let covered = || match self.kind {
+            Kind::Triangle => stroke::SAMPLES.iter().filter(|sample| self.edges_at(i, j, **sample).1).count(),
+            _ => stroke::samples(&self.strokes, [self.snapped[1], self.snapped[2]], [i, j]),
+        };
+        self.is_smooth.then(covered)
+    }
+
+    /// RAS-2, RAS-3: returns the edge functions of a triangle at a sample of a pixel, and whether it is covered.
+    fn edges_at(&self, i: i128, j: i128, [right, down]: [i128; 2]) -> ([i128; 3], bool) {
+        let (x, y) = (16 * i + right, 16 * j + down);
         let (mut e, mut covered) = ([0; 3], true);
         for k in 0..3 {
             // The edge is turned so that the vertices run clockwise (y down). The inside then lies to the right of s -> t.
@@ -369,7 +387,13 @@ impl Setup {
         Some(Sample { edges, b: weights::weights(edges, self.w)? })
     }
 
-    /// INT-2: interpolates one of the two vertex colours.
+    /// SMO-2: returns the sample point of a pixel that is drawn, at its centre even if that is not covered.
+    pub fn drawn_sample(&self, i: i128, j: i128) -> Sample {
+        let (edges, _) = self.edges(i, j);
+        Sample { edges, b: weights::signed_weights(edges, self.w).0 }
+    }
+
+    /// INT-2, SMO-2: interpolates one of the two vertex colours.
     pub fn color(&self, weights: [i128; 3], which: impl Fn(&Vertex) -> VertexColor) -> [i128; 4] {
         let colors = [0, 1, 2].map(|k| match which(&self.vertices[k]) {
             VertexColor::Bytes(b) => b.map(i128::from),
@@ -377,7 +401,9 @@ impl Setup {
         });
         std::array::from_fn(|c| {
             let sum: i128 = (0..3).map(|k| colors[k][c] * weights[k]).sum();
-            (sum + 128) >> 8
+            let mut channel = colors.map(|color| color[c]);
+            channel.sort_unstable();
+            ((sum + 128) >> 8).clamp(channel[0], channel[2])
         })
     }
 
@@ -390,7 +416,7 @@ impl Setup {
     fn depth_or_w(&self, sample: &Sample, z: [f32; 3], w_buffer: bool) -> Number {
         if !w_buffer {
             let edges = weights::edge_numbers(sample.edges, None);
-            let b = weights::shares(edges, weights::reciprocal(weights::sum(edges, 29)));
+            let b = weights::shares(edges, weights::reciprocal(weights::total(edges)));
             return weights::linear_from(weights::largest_edge(sample.edges), z, b, 29);
         }
         let w = self.vertices.each_ref().map(|v| v.position[3]);
@@ -398,7 +424,7 @@ impl Setup {
         // 61 bits of the largest count.
         let last = edges.iter().filter_map(|edge| edge.exponent()).max().unwrap_or(0) - 60;
         let edges = edges.map(|edge| edge.cut_at(last));
-        let mut b = weights::shares(edges, weights::reciprocal(weights::sum(edges, 29)));
+        let mut b = weights::shares(edges, weights::reciprocal(weights::total(edges)));
         let d = weights::dominant(b);
         b[d] = weights::rest(b, d).cut(24);
         weights::linear_from(1, w, b, 29)

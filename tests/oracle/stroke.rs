@@ -1,4 +1,4 @@
-//! Lines, points and patterns, pixel by pixel: LIN-1, LIN-2, PNT-1, POL-1, STP-1.
+//! Lines, points and patterns, pixel by pixel: LIN-1, LIN-2, PNT-1, POL-1, STP-1; the samples of smooth edges: SMO-1.
 
 use ninebit::state::{
     Cull, Draw, FrontFace, LineRasterization, Lines, PolygonMode, PolygonModes, ProvokingVertex, Topology,
@@ -87,13 +87,29 @@ pub fn patterned(draw: &Draw, x: u64, y: u64) -> bool {
     (byte >> (7 - x % 8)) % 2 == 1
 }
 
+/// SMO-1: the samples of a pixel, in 1/16 from its upper left corner.
+pub const SAMPLES: [[i128; 2]; 8] = [[0, 0], [6, 2], [12, 4], [2, 6], [8, 8], [14, 10], [4, 12], [10, 14]];
+
+/// A pixel's centre.
+pub const CENTRE: [i128; 2] = [8, 8];
+
+/// SMO-1: returns how many samples of a pixel a smooth line covers.
+pub fn samples(of: &Strokes, ends: [[i128; 2]; 2], pixel: [i128; 2]) -> usize {
+    SAMPLES.iter().filter(|sample| wide(of.lines.width.into(), ends, pixel, **sample).1).count()
+}
+
 /// Returns the edge functions of a line or a point at a pixel, and whether it covers the pixel.
 pub fn edges(of: &Strokes, kind: Kind, ends: [[i128; 2]; 2], pixel: [i128; 2]) -> ([i128; 3], bool) {
     if kind == Kind::Point {
         return ([0, 1, 0], point(of.point_size.into(), ends[0], pixel));
     }
     match of.lines.rasterization {
-        LineRasterization::Rectangular => wide(of.lines.width.into(), ends, pixel),
+        LineRasterization::Rectangular => wide(of.lines.width.into(), ends, pixel, CENTRE),
+        LineRasterization::RectangularSmooth => {
+            let width = i128::from(of.lines.width);
+            let covered = SAMPLES.iter().any(|sample| wide(width, ends, pixel, *sample).1);
+            (wide(width, ends, pixel, CENTRE).0, covered)
+        }
         LineRasterization::Bresenham => thin(ends, pixel),
     }
 }
@@ -109,9 +125,9 @@ fn point(n: i128, at: [i128; 2], pixel: [i128; 2]) -> bool {
     })
 }
 
-fn wide(n: i128, [from, to]: [[i128; 2]; 2], pixel: [i128; 2]) -> ([i128; 3], bool) {
+fn wide(n: i128, [from, to]: [[i128; 2]; 2], pixel: [i128; 2], sample: [i128; 2]) -> ([i128; 3], bool) {
     let d = [to[0] - from[0], to[1] - from[1]];
-    let p = [0, 1].map(|axis| 16 * pixel[axis] + 8 - from[axis]);
+    let p = [0, 1].map(|axis| 16 * pixel[axis] + sample[axis] - from[axis]);
     let square = d[0] * d[0] + d[1] * d[1];
     let along = p[0] * d[0] + p[1] * d[1];
     let across = 2 * (p[1] * d[0] - p[0] * d[1]);

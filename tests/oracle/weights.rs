@@ -23,8 +23,17 @@ pub fn sum(terms: [Number; 3], n: i32) -> Number {
     Number { m: terms.into_iter().map(|term| term.cut_at(last).over(last)).sum(), e: last }
 }
 
-/// WGT-1 (3): returns R of a number above 0 that has at most 31 bits.
+/// WGT-1 (2): returns S, which outside of a triangle may have any sign but is not 0.
+pub fn total(edges: [Number; 3]) -> Number {
+    let sum = sum(edges, 29);
+    if sum.m == 0 { Number { m: 1, ..sum } } else { sum }
+}
+
+/// WGT-1 (3): returns R of a number other than 0 that has at most 31 bits.
 pub fn reciprocal(s: Number) -> Number {
+    if s.m < 0 {
+        return -reciprocal(-s);
+    }
     let length = bits(s.m);
     if s.m == 1 << (length - 1) {
         return Number { m: 1, e: 1 - length - s.e };
@@ -66,16 +75,18 @@ pub fn rest(b: [Number; 3], d: usize) -> Number {
 
 /// WGT-1: returns the three weights, or `None` if the sum of the edge numbers is below 0, which it is not inside a triangle.
 pub fn weights(edges: [i128; 3], w: Option<[Number; 3]>) -> Option<[Number; 3]> {
+    let (b, is_behind) = signed_weights(edges, w);
+    (!is_behind).then_some(b)
+}
+
+/// WGT-1: returns the three weights, and whether the sum of the edge numbers is below 0.
+pub fn signed_weights(edges: [i128; 3], w: Option<[Number; 3]>) -> ([Number; 3], bool) {
     let edges = edge_numbers(edges, w);
-    let mut s = sum(edges, 29);
-    if s.m < 0 {
-        return None;
-    }
-    s.m = s.m.max(1);
+    let s = total(edges);
     let mut b = shares(edges, reciprocal(s));
     let d = dominant(b);
     b[d] = rest(b, d).up(24);
-    Some(b)
+    (b, s.m < 0)
 }
 
 /// Returns what is linear with the values `f` at the vertices: the aligned sum at `n` bits of one vertex's value and of the differences
@@ -99,9 +110,10 @@ pub fn linear(f: [f32; 3], b: [Number; 3]) -> Number {
     linear_from(1, f, b, 24)
 }
 
-/// WGT-1 (7): returns the weights of three colours in 256ths.
+/// WGT-1 (7), SMO-2: returns the weights of three colours in 256ths.
 pub fn colour_weights(b: [Number; 3]) -> [i128; 3] {
-    let [w0, w2] = [b[0], b[2]].map(|b| b.floor(256));
+    let toward_zero = |b: Number| if b.m < 0 { -(-b).floor(256) } else { b.floor(256) };
+    let [w0, w2] = [b[0], b[2]].map(toward_zero);
     [w0, 256 - w0 - w2, w2]
 }
 

@@ -191,6 +191,7 @@ fn whole(
     let plan = compiled(scene, PlanOptions { policies: options.policies, prune: true })?;
     let mut made = Vec::new();
     for (number, draw) in draws {
+        refuse_smooth(*number, &plan)?;
         let function = Function::of_pixel(scene, &plan, *number, &options);
         let setup = Setup::new(&plan, &plan.draws()[*number], &function);
         made.push((*number, shown::name(&draw.name), function, setup));
@@ -236,6 +237,16 @@ fn compiled(scene: &Scene, options: PlanOptions) -> Result<Plan, Failure> {
     })
 }
 
+/// Refuses a draw with smooth edges: their samples are not printed.
+fn refuse_smooth(number: usize, plan: &Plan) -> Result<(), Failure> {
+    if !plan.draws()[number].assembly.has_smooth_edges() {
+        return Ok(());
+    }
+    let message = format!("the smooth edges of draw {number} are not printed");
+    let help = "leave `smooth_polygons` and `RectangularSmooth` out, or print its `--fragment`";
+    Err(Failure::invalid("NB0402", message, help))
+}
+
 /// Returns draws, or a program of its own, as functions.
 fn functions(
     arguments: &Arguments,
@@ -253,6 +264,9 @@ fn functions(
     };
     // Nothing is pruned: with `--uniform` other constants may be passed.
     let plan = compiled(scene, PlanOptions { policies: options.policies, prune: false })?;
+    if !(alone || arguments.fragment) {
+        draws.iter().try_for_each(|(number, _)| refuse_smooth(*number, &plan))?;
+    }
     let made = |(number, draw): &(usize, &Draw)| {
         if alone {
             let about = format!("{} on {}", shown::path(path), scene.profile.name());

@@ -68,7 +68,7 @@ fn stored_words_are_those_of_traces() {
 fn hold(seed: u64, count: u64) -> u64 {
     let mut runner = runner(seed);
     let (mut random, mut held) = (Random::seeded(seed), 0);
-    let scenes = random_scene::scene();
+    let scenes = random_scene::sharp();
     for number in 0..count {
         let scene = scenes.new_tree(&mut runner).unwrap().current();
         let policies = if number % 2 == 1 { any_policies(&mut random) } else { Policies::DEFAULT };

@@ -76,6 +76,11 @@ pub(crate) fn state(view: &mut View<'_>, depth: DepthFormat, draw: &mut Draw) ->
     visible
 }
 
+/// SMO-1: returns whether edges are smooth. The register's first bit forbids it.
+fn smooths(view: &mut View<'_>, enable: u32) -> bool {
+    view.enabled(enable) && view.get(class::SET_ANTI_ALIASING_CONTROL) & 1 == 0
+}
+
 fn figures(view: &mut View<'_>, draw: &mut Draw) {
     let models = [(ShadeModel::Smooth, 0x1d01), (ShadeModel::Flat, 0x1d00)];
     draw.shade_model = choose(view, class::SET_SHADE_MODEL, &models);
@@ -96,19 +101,18 @@ fn figures(view: &mut View<'_>, draw: &mut Draw) {
             draw.polygon_stipple =
                 Some(PolygonStipple(std::array::from_fn(|row| view.get(class::SET_STIPPLE_PATTERN + 4 * row as u32))));
         }
-        if view.enabled(class::SET_POLY_SMOOTH_ENABLE) {
-            view.note(Gap::NotModelled("smooth polygons".into()));
-        }
+        draw.smooth_polygons = smooths(view, class::SET_POLY_SMOOTH_ENABLE);
     }
     if lines {
         let width = (view.get(class::SET_LINE_WIDTH) & 0x1ff) as u16;
         // LIN-2.
         let rectangles = view.get(class::SET_ANTI_ALIASING_CONTROL) & 1 != 0;
-        let rasterization = if rectangles { LineRasterization::Rectangular } else { LineRasterization::Bresenham };
+        let rasterization = match smooths(view, class::SET_LINE_SMOOTH_ENABLE) {
+            true => LineRasterization::RectangularSmooth,
+            false if rectangles => LineRasterization::Rectangular,
+            false => LineRasterization::Bresenham,
+        };
         draw.lines = Lines { width, rasterization };
-        if view.enabled(class::SET_LINE_SMOOTH_ENABLE) {
-            view.note(Gap::NotModelled("smooth lines".into()));
-        }
     }
     if corners {
         draw.point_size = (view.get(class::SET_POINT_SIZE) & 0x1ff) as u16;

@@ -93,7 +93,7 @@ pub(super) fn draw(words: &mut Words, scene: &Scene, draw: &Draw) -> Result<(), 
         | PERSPECTIVE.put(draw.perspective.into())
         | CONVERSION.put(draw.convert_yuv.into());
     words.set(class::SET_CONTROL0, control);
-    figures(words, draw);
+    figures(words, draw)?;
     fog(words, &draw.fog)?;
     window_clip(words, draw)?;
     words.set(class::SET_ALPHA_TEST_ENABLE, draw.alpha_test.is_some().into());
@@ -125,7 +125,7 @@ pub(super) fn draw(words: &mut Words, scene: &Scene, draw: &Draw) -> Result<(), 
     Ok(())
 }
 
-fn figures(words: &mut Words, draw: &Draw) {
+fn figures(words: &mut Words, draw: &Draw) -> Result<(), ExportError> {
     let flat = draw.shade_model == ShadeModel::Flat;
     words.set(class::SET_SHADE_MODEL, if flat { 0x1d00 } else { 0x1d01 });
     words.set(class::SET_FLAT_SHADE_OP, (draw.provoking_vertex == ProvokingVertex::First).into());
@@ -137,17 +137,23 @@ fn figures(words: &mut Words, draw: &Draw) {
             words.set(class::SET_STIPPLE_PATTERN + 4 * n, *row);
         }
     }
-    words.set(class::SET_LINE_SMOOTH_ENABLE, 0);
-    words.set(class::SET_POLY_SMOOTH_ENABLE, 0);
+    let smooth_lines = draw.lines.rasterization == LineRasterization::RectangularSmooth;
+    words.set(class::SET_LINE_SMOOTH_ENABLE, smooth_lines.into());
+    words.set(class::SET_POLY_SMOOTH_ENABLE, draw.smooth_polygons.into());
     words.set(class::SET_LINE_WIDTH, draw.lines.width.into());
-    // LIN-2: the first bit makes lines rectangles. Celsius has no such bit.
+    // LIN-2, SMO-1: the first bit makes lines rectangles, and nothing smooth. Celsius has no such bit.
     let modes = [draw.polygon_modes.front, draw.polygon_modes.back];
     let lines = matches!(draw.topology, Topology::Lines | Topology::LineStrip | Topology::LineLoop);
     let lines = lines || draw.topology.has_faces() && modes.contains(&PolygonMode::Line);
-    let rectangles = u32::from(draw.lines.rasterization == LineRasterization::Rectangular);
+    let rectangles = draw.lines.rasterization == LineRasterization::Rectangular;
+    let smooth_polygons = draw.smooth_polygons && draw.topology.has_faces();
+    if smooth_polygons && (lines && rectangles || modes.contains(&PolygonMode::Point)) {
+        return refuse("smooth polygons have no word beside points and `Rectangular` lines: take `RectangularSmooth`");
+    }
+    let sharp = u32::from(rectangles && !smooth_polygons);
     match words.family {
-        Family::Kelvin => words.set(class::SET_ANTI_ALIASING_CONTROL, 0xffff_0000 | rectangles),
-        Family::Celsius if lines => words.set(class::SET_ANTI_ALIASING_CONTROL, rectangles),
+        Family::Kelvin => words.set(class::SET_ANTI_ALIASING_CONTROL, 0xffff_0000 | sharp),
+        Family::Celsius if lines || smooth_polygons => words.set(class::SET_ANTI_ALIASING_CONTROL, sharp),
         Family::Celsius => {}
     }
     words.set(class::SET_POINT_SIZE, draw.point_size.into());
@@ -156,6 +162,7 @@ fn figures(words: &mut Words, draw: &Draw) {
     words.set(class::SET_FRONT_FACE, if draw.front_face == FrontFace::Clockwise { 0x900 } else { 0x901 });
     words.set(class::SET_CULL_FACE_ENABLE, (draw.cull != Cull::None).into());
     words.set(class::SET_CULL_FACE, if draw.cull == Cull::Front { 0x404 } else { 0x405 });
+    Ok(())
 }
 
 fn fog(words: &mut Words, fog: &Fog) -> Result<(), ExportError> {

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use ninebit::engine::{RenderOptions, render};
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
-use ninebit::state::{Profile, Scene};
+use ninebit::state::{PolygonMode, Profile, Scene};
 use ninebit_methods::export::{Methods, export, push_buffer, trace};
 use ninebit_methods::import::{Options, import};
 use ninebit_methods::memory::Memory;
@@ -173,4 +173,14 @@ fn video_comes_back() {
     for as_words in [false, true] {
         assert_eq!(trip(&scene, &plan, as_words), Ok(None));
     }
+}
+
+#[test]
+fn smooth_edges_come_back() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../vectors/scenes/lines/smooth.ron");
+    let mut scene = ninebit_scene::load(&path, &Limits::default()).unwrap().scene;
+    assert_eq!(Trip::new("smooth".into(), scene.clone(), true).result, Ok(None));
+    // One register has the points sharp and the polygons smooth.
+    scene.draws[0].polygon_modes.back = PolygonMode::Point;
+    assert!(Trip::new("points".into(), scene, true).result.is_err_and(|message| message.contains("smooth polygons")));
 }

@@ -137,7 +137,8 @@ mod tests {
         let indices: Arc<[u32]> = (0..3 * count).collect();
         let triangles = Triangles::split(&indices, Topology::Triangles, ProvokingVertex::First);
         let (vertices, clipping, lines) = (Vertices::default(), Clipping::default(), Lines::default());
-        Assembly { vertices, corners, triangles, clipping, lines, point_size: 8, point_sizes: None }
+        let smooth_polygons = false;
+        Assembly { vertices, corners, triangles, clipping, smooth_polygons, lines, point_size: 8, point_sizes: None }
     }
 
     /// No band costs more than its part, one row and what makes a border even.

@@ -121,6 +121,9 @@ impl<'a> TriangleContext<'a> {
         match draw.assembly.triangles.figure(number) {
             Figure::Triangle => {
                 self.triangle.place_corners(x, y);
+                if draw.assembly.smooth_polygons {
+                    self.triangle = self.triangle.smooth();
+                }
             }
             Figure::Line => self.triangle.place_line([[x[1], y[1]], [x[2], y[2]]], draw.assembly.lines),
             Figure::Point => self.triangle.place_point([x[1], y[1]], draw.assembly.size_of(number)),
@@ -183,11 +186,13 @@ impl<'a> TriangleContext<'a> {
         [self.primary, self.secondary]
     }
 
-    /// STP-1: returns whether the pattern of filled triangles leaves a pixel out.
+    /// STP-1, SMO-1: returns whether the pattern of filled triangles leaves out a pixel of a [span](Triangle::span), or whether smooth edges have no sample
+    /// there.
     #[inline]
-    pub fn is_stippled(&self, i: i64, j: i64) -> bool {
+    pub fn is_left_out(&self, i: i64, j: i64) -> bool {
         let stipple = self.draw.polygon_stipple.as_ref().filter(|_| self.triangle.figure == Figure::Triangle);
         stipple.is_some_and(|stipple| !stroke::stipples(stipple, i, j))
+            || (self.triangle.is_smooth && self.triangle.covered_samples(i, j) == 0)
     }
 
     /// Returns the triangle's vertices.

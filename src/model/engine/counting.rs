@@ -113,9 +113,9 @@ pub(super) fn spans(plan: &Plan, planned: &PlannedDraw, mut visit: impl FnMut(u6
         let triangle = &context.triangle;
         for row in triangle.rows.0.max(rows.0)..triangle.rows.1.min(rows.1) {
             let (first, end) = triangle.span(row, columns);
-            let pixels = match planned.polygon_stipple {
-                None => (end - first) as u64,
-                Some(_) => (first..end).filter(|i| !context.is_stippled(*i, row)).count() as u64,
+            let pixels = match planned.polygon_stipple.is_some() || triangle.is_smooth {
+                false => (end - first) as u64,
+                true => (first..end).filter(|i| !context.is_left_out(*i, row)).count() as u64,
             };
             if !visit(pixels) {
                 return;

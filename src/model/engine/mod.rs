@@ -72,7 +72,7 @@ impl Default for RenderOptions {
 pub struct Statistics {
     /// Number of covered pixels of each draw, counted once for each triangle that covers them.
     pub shaded_pixels: Vec<u64>,
-    /// Number of these that the scalar engine drew for the fast one, because rows do not sample their textures.
+    /// Number of these that the scalar engine drew for the fast one, because rows do not sample their textures, or edges are smooth.
     pub scalar_pixels: u64,
 }
 

@@ -10,6 +10,7 @@ use crate::raster::depth;
 use crate::raster::ideal;
 use crate::raster::interpolate::{self, Sample};
 use crate::raster::setup::significant;
+use crate::raster::smooth;
 use crate::rop::{blend, stencil, surface};
 use crate::state::*;
 use crate::texture::chain::Chain;
@@ -100,9 +101,27 @@ impl TriangleContext<'_> {
             }
         }
         let (profile, policies) = (self.plan.profile, &self.plan.policies);
-        let source = final_combiner::run(&draw.final_combiner, profile, policies, &mut registers, observer);
+        let mut source = final_combiner::run(&draw.final_combiner, profile, policies, &mut registers, observer);
+        // Nothing reads an alpha that is not live.
+        if self.triangle.is_smooth && draw.final_combiner.live & 8 != 0 {
+            source[3] = self.cover_alpha(source[3], fragment.pixel, observer);
+        }
         self.depth_stencil_test(&source, &sample, memory, observer)?;
         self.raster_operations(source, fragment, memory, destination, observer)
+    }
+
+    /// SMO-1: returns the alpha of a pixel that smooth edges may cover in part.
+    #[cold]
+    fn cover_alpha<L: Lane, O: Observer>(&self, alpha: L, (i, j): (i64, i64), observer: &mut O) -> L {
+        let samples = self.triangle.covered_samples(i, j);
+        let fixed = smooth::covered_alpha(alpha.decision().into(), samples) as i32;
+        #[allow(clippy::float_arithmetic, reason = "the ideal's part")]
+        let covered = alpha.multiplied(fixed, || samples as f64 / smooth::SAMPLES as f64);
+        let covered = observer.observe(Rule::Smo1, covered);
+        if O::ON && observer.wants_any(&["samples", "fragment."]) {
+            reports::covered_alpha(alpha, samples, covered, observer);
+        }
+        covered
     }
 
     /// INT-2: loads PRIMARY, SECONDARY and FOG.
@@ -119,6 +138,7 @@ impl TriangleContext<'_> {
             (Register::PrimaryColor, draw.primary, &self.primary, "primary"),
             (Register::SecondaryColor, draw.secondary, &self.secondary, "secondary"),
         ];
+        let is_outside = sample.is_outside();
         // Equal bytes at all three vertices need no weights, because C W0 + C W1 + C W2 is 256 C.
         let weights = if O::ON || sets.iter().any(|s| s.1 != 0 && !constant(s.2)) {
             let weights = sample.color_weights();
@@ -134,11 +154,8 @@ impl TriangleContext<'_> {
             #[allow(clippy::float_arithmetic, reason = "the ideal's weight")]
             L::weight(weights[n] as i32, || 256.0 * self.barycentrics(sample)[k])
         };
-        let (w0, w2) = (lane(0), lane(1));
-        for (register, live, colors, name) in sets {
-            if live == 0 {
-                continue;
-            }
+        let outer = if is_outside { None } else { Some((lane(0), lane(1))) };
+        for (register, live, colors, name) in sets.into_iter().filter(|set| set.1 != 0) {
             let sources = OnceCell::new();
             let source = |k: usize| sources.get_or_init(|| [0, 1, 2].map(|k| self.source(register, k)))[k];
             let corners: [[L; 3]; 4] = std::array::from_fn(|channel| {
@@ -156,22 +173,28 @@ impl TriangleContext<'_> {
             for (channel, value) in value.iter_mut().enumerate() {
                 *value = corners[channel][0];
                 if O::ON || !constant(colors) {
-                    *value = interpolate::color(corners[channel], w0, w2);
+                    *value = match outer {
+                        Some((w0, w2)) => interpolate::color(corners[channel], w0, w2),
+                        None => {
+                            let fixed = smooth::color(colors.map(|color| color[channel]), weights);
+                            let real = |values| ideal::limited_mix(self.barycentrics(sample), values);
+                            L::mixed(corners[channel], fixed.into(), real)
+                        }
+                    };
                     if O::MEASURES && live >> channel & 1 != 0 {
-                        *value = observer.observe(Rule::Int2, *value);
+                        *value = observer.observe(if is_outside { Rule::Smo2 } else { Rule::Int2 }, *value);
                     }
                 }
             }
             if O::ON && observer.wants_any(&[name, "vertex"]) {
-                let output =
-                    draw.vertex_program.then_some(if register == Register::PrimaryColor { "oD0" } else { "oD1" });
+                let output = if register == Register::PrimaryColor { "oD0" } else { "oD1" };
                 for channel in (0..4).filter(|c| live >> c & 1 != 0) {
                     reports::color(
                         name,
                         channel,
-                        ([0, 1, 2].map(source), output),
+                        ([0, 1, 2].map(source), draw.vertex_program.then_some(output)),
                         corners[channel],
-                        &weights,
+                        (&weights, is_outside),
                         value[channel],
                         observer,
                     );

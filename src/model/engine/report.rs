@@ -32,7 +32,7 @@ pub(super) fn setup<O: Observer>(
     let triangle = sample.triangle;
     let rule = match (triangle.figure, draw.assembly.lines.rasterization) {
         (Figure::Triangle, _) => "RAS-3",
-        (Figure::Line, LineRasterization::Rectangular) => "LIN-1",
+        (Figure::Line, LineRasterization::Rectangular | LineRasterization::RectangularSmooth) => "LIN-1",
         (Figure::Line, LineRasterization::Bresenham) => "LIN-2",
         (Figure::Point, _) => "PNT-1",
     };
@@ -54,6 +54,13 @@ fn pattern<O: Observer>(stipple: &PolygonStipple, (x, y): (i64, i64), observer: 
     observer.step(step.by("stipple_bit", vec![row, plain("x", x)]));
 }
 
+/// SMO-1: reports the samples of a pixel, and the fragment's alpha.
+pub(super) fn covered_alpha<L: Lane, O: Observer>(alpha: L, samples: i64, covered: L, observer: &mut O) {
+    let samples = observer.tell(Step::plain(RASTER, "SMO-1", "samples", samples));
+    let inputs = vec![report::register("fragment.a", alpha), samples];
+    observer.step(report::register_step(RASTER, "SMO-1", "fragment.a", covered).by("cover", inputs));
+}
+
 /// CMB-13: reports registers that are read before they are written.
 pub(super) fn undefined<O: Observer>(read: u64, observer: &mut O) {
     for register in [Register::Spare0, Register::Spare1] {
@@ -69,10 +76,11 @@ pub(super) fn undefined<O: Observer>(read: u64, observer: &mut O) {
 pub(super) fn weights<O: Observer>(sample: &Sample<'_>, [w0, w2]: [i64; 2], barycentrics: [f64; 3], observer: &mut O) {
     #[allow(clippy::float_arithmetic, reason = "display of the ideal")]
     let ideal = barycentrics.map(|b| Some(256.0 * b));
-    let step = |name: &str, value: i64| Step::plain(INTERPOLATION, "INT-2", name, value).per(256);
+    let (rule, operation) = if sample.is_outside() { ("SMO-2", "signed_weight") } else { ("INT-2", "floor_weight") };
+    let step = |name: &str, value: i64| Step::plain(INTERPOLATION, rule, name, value).per(256);
     for (k, value) in [(0, w0), (2, w2)] {
         let inputs = vec![raster::number(format!("b{k}"), sample.weights().b[k])];
-        observer.step(step(&format!("W{k}"), value).by("floor_weight", inputs).ideal(ideal[k]));
+        observer.step(step(&format!("W{k}"), value).by(operation, inputs).ideal(ideal[k]));
     }
     let inputs = vec![part("W0", w0), part("W2", w2)];
     observer.step(step("W1", 256 - w0 - w2).by("remainder_weight", inputs).ideal(ideal[1]));
@@ -85,7 +93,7 @@ pub(super) fn color<L: Lane, O: Observer>(
     channel: usize,
     (sources, output): ([VertexColor; 3], Option<&str>),
     corners: [L; 3],
-    &[w0, w2]: &[i64; 2],
+    (&[w0, w2], is_outside): (&[i64; 2], bool),
     value: L,
     observer: &mut O,
 ) {
@@ -103,7 +111,8 @@ pub(super) fn color<L: Lane, O: Observer>(
         inputs.push(observer.tell(report::register_step(INTERPOLATION, rule, corner, corners[k]).note(note)));
     }
     inputs.extend([part("W0", w0), part("W1", 256 - w0 - w2), part("W2", w2)]);
-    observer.step(report::register_step(INTERPOLATION, "INT-2", name, value).by("interpolate", inputs));
+    let (rule, operation) = if is_outside { ("SMO-2", "interpolate_within") } else { ("INT-2", "interpolate") };
+    observer.step(report::register_step(INTERPOLATION, rule, name, value).by(operation, inputs));
 }
 
 impl TriangleContext<'_> {

@@ -321,7 +321,7 @@ impl<'a> Tracer<'a> {
 /// Returns whether triangle `number` covers a pixel. Texture coordinates and fog are not set up.
 fn covered(context: &mut TriangleContext<'_>, number: usize, (x, y): (u32, u32)) -> bool {
     let (i, j) = (i64::from(x), i64::from(y));
-    context.set_up(number, (j, j + 1)) && context.triangle.contains(i, j) && !context.is_stippled(i, j)
+    context.set_up(number, (j, j + 1)) && context.triangle.contains(i, j) && !context.is_left_out(i, j)
 }
 
 /// The contents of a traced pixel.

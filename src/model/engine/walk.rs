@@ -76,7 +76,7 @@ pub fn covered(
     mut visit: impl FnMut(&TriangleContext<'_>, i64, i64),
 ) {
     spans(plan, planned, rows, |context, j, (first, end)| {
-        for i in (first..end).filter(|i| !context.is_stippled(*i, j)) {
+        for i in (first..end).filter(|i| !context.is_left_out(*i, j)) {
             visit(context, i, j);
         }
     });

@@ -4,11 +4,14 @@
 use std::sync::Arc;
 
 use super::setup::centres;
+use super::smooth;
 use super::stroke::{self, Figure};
 pub(crate) use super::triangles::{IndexedTriangle, Triangles};
 use super::{LARGEST_W, SMALLEST_W, modes, project};
 use crate::number::convert::{snap, vertex_color};
-use crate::state::{Draw, Lines, Positions, TriangleVertices, Vertex, VertexColor, Vertices, Viewport};
+use crate::state::{
+    Draw, LineRasterization, Lines, Positions, TriangleVertices, Vertex, VertexColor, Vertices, Viewport,
+};
 
 /// The values of a vertex that triangle set-up reads, converted as on the chip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -35,6 +38,8 @@ pub struct Assembly {
     pub triangles: Triangles,
     /// The result of clipping.
     pub clipping: Clipping,
+    /// Whether triangles have smooth edges (SMO-1).
+    pub smooth_polygons: bool,
     /// State of the lines.
     pub lines: Lines,
     /// Size of the points in 1/8 pixel.
@@ -65,7 +70,10 @@ impl Assembly {
     pub(crate) fn bounds(&self, number: usize, axis: usize) -> (i64, i64) {
         let all = self.positions(number);
         match self.triangles.figure(number) {
-            Figure::Triangle => centres(all.map(|position| position[axis])),
+            Figure::Triangle => {
+                let centres = centres(all.map(|position| position[axis]));
+                if self.smooth_polygons { smooth::widened(centres) } else { centres }
+            }
             Figure::Line => stroke::line_box([all[1], all[2]], self.lines)[axis],
             Figure::Point => stroke::point_box(all[1], self.size_of(number))[axis],
         }
@@ -117,6 +125,17 @@ pub struct Piece {
 }
 
 impl Assembly {
+    /// Returns whether a triangle or a line has smooth edges (SMO-1).
+    pub fn has_smooth_edges(&self) -> bool {
+        let smooth_lines = self.lines.rasterization == LineRasterization::RectangularSmooth;
+        (self.smooth_polygons || smooth_lines)
+            && (0..self.triangles.len()).any(|number| match self.triangles.figure(number) {
+                Figure::Triangle => self.smooth_polygons,
+                Figure::Line => smooth_lines,
+                Figure::Point => false,
+            })
+    }
+
     /// Returns the vertices of triangle `number`.
     ///
     /// # Panics
@@ -195,8 +214,9 @@ fn finish(
         return Err(errors);
     }
     let corners = used.iter().enumerate().map(|(v, used)| corner(&vertices, v, *used)).collect();
-    let (lines, point_size, point_sizes) = (draw.lines, draw.point_size, draw.point_sizes.clone());
-    Ok(Assembly { vertices, corners, triangles, clipping, lines, point_size, point_sizes })
+    let Draw { smooth_polygons, lines, point_size, .. } = *draw;
+    let point_sizes = draw.point_sizes.clone();
+    Ok(Assembly { vertices, corners, triangles, clipping, smooth_polygons, lines, point_size, point_sizes })
 }
 
 fn corner(vertices: &Vertices, index: usize, used: bool) -> Corner {

@@ -188,7 +188,8 @@ pub fn interpolate(e: [i64; 3], z: [f32; 3]) -> Binary {
     let reference = largest_edge(e);
     let choice = reference_vertex(e);
     let edges = edge_numbers(e.map(Binary::from_edge), None);
-    let shares = shares(edges, Binary::sum_of_edges::<true>(edges).reciprocal::<true>());
+    // Smooth edges reach outside of the triangle (SMO-2).
+    let shares = shares(edges, Binary::sum_of_edges::<false>(edges).reciprocal::<false>());
     sum_of_terms(shares, Binary::new(z[reference]), differences(z, reference), choice)
 }
 

@@ -32,6 +32,13 @@ pub fn mix(weights: [f64; 3], values: [f64; 3]) -> f64 {
     weights[0] * values[0] + weights[1] * values[1] + weights[2] * values[2]
 }
 
+/// Returns the weighted sum of the vertices' values, limited to what they are. Without a sum it is the first.
+pub(crate) fn limited_mix(weights: [f64; 3], values: [f64; 3]) -> f64 {
+    let sum = mix(weights, values);
+    let [least, most] = [f64::min, f64::max].map(|of| values.into_iter().fold(values[0], of));
+    if sum.is_nan() { values[0] } else { sum.clamp(least, most) }
+}
+
 /// Returns a channel of a vertex colour in 255ths, limited to 0..1 but not rounded.
 pub(crate) fn color_channel(color: &crate::state::VertexColor, channel: usize) -> f64 {
     match color {
@@ -51,7 +58,8 @@ pub(crate) fn quotient(coordinate: f64, q: f64) -> f64 {
 /// known.
 pub(crate) fn fog(function: &Option<FogFunction>, weights: [f64; 3], passed: [f32; 3], known: [Option<f32>; 3]) -> f64 {
     let Some(function) = function else {
-        return 255.0 * mix(weights, passed.map(|f| f64::from(super::fog::limited(f))));
+        // Outside of the triangle it may leave 0..1 (SMO-2).
+        return 255.0 * mix(weights, passed.map(|f| f64::from(super::fog::limited(f)))).clamp(0.0, 1.0);
     };
     let mode = function.mode;
     let vertices: [f64; 3] = std::array::from_fn(|k| fog_of_vertex(function, passed[k], known[k]));

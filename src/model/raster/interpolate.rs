@@ -2,6 +2,7 @@
 
 use super::binary::Binary;
 use super::setup::Triangle;
+use super::smooth;
 use super::weights::{Linear, Number, Weights, quotient};
 use crate::number::{Blend, Integer};
 use std::cell::OnceCell;
@@ -47,11 +48,17 @@ impl<'a> Sample<'a> {
         f.at([b0, b2])
     }
 
-    /// INT-2: returns W0 and W2, each 0..=256. W1 is the remainder.
+    /// INT-2, SMO-2: returns W0 and W2, each 0..=256 unless the sample [is outside](Self::is_outside). W1 is the remainder.
     #[inline]
     pub fn color_weights(&self) -> [i64; 2] {
         let [first, _, third] = self.weights().b;
-        [first, third].map(color_weight)
+        [first, third].map(if self.is_outside() { smooth::color_weight } else { color_weight })
+    }
+
+    /// Returns whether the sample lies outside, where smooth edges may reach.
+    #[inline]
+    pub fn is_outside(&self) -> bool {
+        (self.e[0] | self.e[1] | self.e[2]) < 0
     }
 
     /// Returns whether the sample lies behind the viewer, where the sum of the edge numbers is not positive. No sample inside of the triangle does.

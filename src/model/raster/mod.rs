@@ -2,8 +2,8 @@
 //!
 //! [`triangles`], [`assemble`] and [`project`] convert the vertices of a draw to clipped triangles in window
 //! coordinates, once, when the plan is made. [`setup`] splits the floats of a triangle; everything after it is integer
-//! arithmetic. [`stroke`] covers lines and points, which [`modes`] makes of triangles. [`weights`] defines the weights of the vertices and the numbers that are interpolated by them,
-//! [`interpolate`] the colours and texel coordinates, [`fog`] the fog, and [`mod@depth`] the depths.
+//! arithmetic. [`stroke`] covers lines and points, which [`modes`] makes of triangles, [`smooth`] the edges of smooth ones. [`weights`] defines the weights
+//! of the vertices and the numbers that are interpolated by them, [`interpolate`] the colours and texel coordinates, [`fog`] the fog, and [`mod@depth`] the depths.
 
 pub mod assemble;
 pub mod binary;
@@ -16,6 +16,7 @@ pub mod modes;
 pub mod project;
 pub(crate) mod report;
 pub mod setup;
+pub mod smooth;
 pub mod stroke;
 pub mod triangles;
 pub mod weights;

@@ -2,7 +2,7 @@
 
 use super::GUARD;
 use super::binary::Binary;
-use super::stroke::{Figure, Side};
+use super::stroke::{Figure, Side, within};
 use super::weights::ratios;
 use crate::number::Integer;
 use crate::number::convert::{snap, w_16_bits};
@@ -36,6 +36,8 @@ pub struct Triangle {
     pub figure: Figure,
     /// The limits of a line, besides its rows and columns.
     pub(crate) sides: [Side; 4],
+    /// Whether its edges are smooth (SMO-1).
+    pub(crate) is_smooth: bool,
 }
 
 impl Triangle {
@@ -63,7 +65,7 @@ impl Triangle {
         self.doubled_area = edges.area.abs();
         (self.rows, self.columns) = (centres(y), centres(x));
         self.counter_clockwise = edges.area < 0;
-        self.figure = Figure::Triangle;
+        (self.figure, self.is_smooth) = (Figure::Triangle, false);
         edges.area != 0
     }
 
@@ -97,26 +99,25 @@ impl Triangle {
     /// Returns whether it covers a pixel.
     pub fn contains(&self, i: i64, j: i64) -> bool {
         let (first, end) = self.span(j, (i, i + 1));
-        first < end
+        first < end && !(self.is_smooth && self.covered_samples(i, j) == 0)
     }
 
-    /// Returns the columns of row j that [`covers`](Self::covers) accepts, or that a line or a point covers, as a half-open range within `columns`.
+    /// Returns the columns of row j that [`covers`](Self::covers) accepts, or that a line or a point covers, as a half-open range within `columns`. With
+    /// smooth edges not all of them need have [samples](Self::covered_samples).
     pub fn span(&self, j: i64, columns: (i64, i64)) -> (i64, i64) {
-        if self.figure != Figure::Triangle {
-            return self.stroke_span(j, columns);
+        match (self.is_smooth, self.figure) {
+            (true, _) => self.smooth_span(j, columns),
+            (false, Figure::Triangle) => within(self.limits(), j, columns),
+            (false, Figure::Line | Figure::Point) => self.stroke_span(j, columns),
         }
-        let (mut low, mut high) = columns;
-        for k in 0..3 {
-            // The condition is a i + r >= 0.
-            let r = self.b[k] * j + self.c[k] - i64::from(!self.owns[k]);
-            match self.a[k] {
-                0 if r < 0 => return (0, 0),
-                0 => {}
-                a if a > 0 => low = low.max(-r.div_euclid(a)),
-                a => high = high.min(r.div_euclid(-a) + 1),
-            }
-        }
-        (low, high.max(low))
+    }
+
+    /// Returns the limits of a triangle's samples.
+    #[inline]
+    pub(super) fn limits(&self) -> [Side; 3] {
+        // Not by a function on arrays, which is not always inlined.
+        let limit = |k: usize| [self.a[k], self.b[k], self.c[k] - i64::from(!self.owns[k])];
+        [limit(0), limit(1), limit(2)]
     }
 }
 

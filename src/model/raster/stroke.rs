@@ -34,7 +34,7 @@ pub(crate) type Range = (i64, i64);
 /// Returns the columns and rows within which a line between two positions in 1/16 pixel covers pixels.
 pub(crate) fn line_box([from, to]: [[i64; 2]; 2], lines: Lines) -> [Range; 2] {
     let ends = [0, 1].map(|axis| (from[axis].min(to[axis]), from[axis].max(to[axis])));
-    if lines.rasterization == LineRasterization::Rectangular {
+    if lines.rasterization != LineRasterization::Bresenham {
         let reach = i64::from(lines.width.div_ceil(16));
         let end = |most: i64| if lines.width == 0 { i64::MIN } else { (most >> 4) + reach + 1 };
         return ends.map(|(least, most)| ((least >> 4) - reach, end(most).max((least >> 4) - reach)));
@@ -121,7 +121,9 @@ impl Triangle {
         let ([dx, dy], [x, y]) = ([to[0] - from[0], to[1] - from[1]], from);
         // 16 (i - x) + 8 and 16 (j - y) + 8 are the distances of a pixel's centre from the first end.
         let (along, length) = match lines.rasterization {
-            LineRasterization::Rectangular => ([16 * dx, 16 * dy, (8 - x) * dx + (8 - y) * dy], dx * dx + dy * dy),
+            LineRasterization::Rectangular | LineRasterization::RectangularSmooth => {
+                ([16 * dx, 16 * dy, (8 - x) * dx + (8 - y) * dy], dx * dx + dy * dy)
+            }
             // The position at which the line leaves a column or a row.
             LineRasterization::Bresenham if is_x_major(from, to) => match dx {
                 0.. => ([16, 0, 16 - x], dx),
@@ -135,8 +137,9 @@ impl Triangle {
         let rest = [-along[0], -along[1], length - along[2]];
         self.stroke(Figure::Line, [ANYWHERE, rest, along], line_box([from, to], lines));
         self.doubled_area = length;
+        self.is_smooth = lines.rasterization == LineRasterization::RectangularSmooth;
         self.sides = match lines.rasterization {
-            LineRasterization::Rectangular => {
+            LineRasterization::Rectangular | LineRasterization::RectangularSmooth => {
                 let across = [-32 * dy, 32 * dx, 2 * ((8 - y) * dx - (8 - x) * dy)];
                 let (major, minor) = (dx.abs().max(dy.abs()), dx.abs().min(dy.abs()));
                 let reach = i64::from(lines.width) * (2 * major + minor);
@@ -161,26 +164,29 @@ impl Triangle {
         for k in 0..3 {
             [self.a[k], self.b[k], self.c[k]] = edges[k];
         }
-        (self.owns, self.counter_clockwise) = ([true; 3], false);
+        (self.owns, self.counter_clockwise, self.is_smooth) = ([true; 3], false, false);
     }
 
     /// Returns the columns of row j that a line or a point covers, as a half-open range within `columns`.
     pub(super) fn stroke_span(&self, j: i64, columns: Range) -> Range {
-        let (mut low, mut high) = (columns.0.max(self.columns.0), columns.1.min(self.columns.1));
-        if !(self.rows.0..self.rows.1).contains(&j) {
-            return (0, 0);
-        }
-        for [a, b, c] in self.sides {
-            let r = b * j + c;
-            match a {
-                0 if r < 0 => return (0, 0),
-                0 => {}
-                a if a > 0 => low = low.max(-r.div_euclid(a)),
-                a => high = high.min(r.div_euclid(-a) + 1),
-            }
-        }
-        (low, high.max(low))
+        let columns = (columns.0.max(self.columns.0), columns.1.min(self.columns.1));
+        if (self.rows.0..self.rows.1).contains(&j) { within(self.sides, j, columns) } else { (0, 0) }
     }
+}
+
+/// Returns the columns of row j within some limits, as a half-open range within `columns`.
+#[inline]
+pub(super) fn within<const N: usize>(limits: [Side; N], j: i64, (mut low, mut high): Range) -> Range {
+    for [a, b, c] in limits {
+        let r = b * j + c;
+        match a {
+            0 if r < 0 => return (0, 0),
+            0 => {}
+            a if a > 0 => low = low.max(-r.div_euclid(a)),
+            a => high = high.min(r.div_euclid(-a) + 1),
+        }
+    }
+    (low, high.max(low))
 }
 
 /// LIN-2: returns the limits of a line that steps along the first axis from `at` by `by`: the pixel of a column is the one in which the line is at

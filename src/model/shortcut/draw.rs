@@ -165,7 +165,7 @@ fn draw<L: Lane>(
     let is_unsnapped = shortcuts.contains(Shortcut::UnsnappedVertices);
     let mut outline: Option<(usize, Option<Outline>)> = None;
     let mut shade = |context: &TriangleContext<'_>, i: i64, j: i64| {
-        if context.is_stippled(i, j) {
+        if context.is_left_out(i, j) {
             return;
         }
         let at = j as usize * target.width as usize + i as usize;

@@ -49,6 +49,7 @@ impl Default for Draw {
             polygon_modes: PolygonModes::FILL,
             edge_flags: None,
             polygon_stipple: None,
+            smooth_polygons: false,
             lines: Lines::default(),
             point_size: 8,
             point_sizes: None,

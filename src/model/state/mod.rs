@@ -126,6 +126,8 @@ pub struct Draw {
     pub edge_flags: Option<Arc<[bool]>>,
     /// The pattern that filled triangles have. `None` means that all of their pixels are drawn.
     pub polygon_stipple: Option<PolygonStipple>,
+    /// Whether filled triangles have smooth edges (SMO-1).
+    pub smooth_polygons: bool,
     /// State of lines.
     pub lines: Lines,
     /// Size of points in 1/8 pixel, at most [`LARGEST_SIZE`] (PNT-1).

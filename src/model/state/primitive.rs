@@ -42,6 +42,8 @@ named! {
         Rectangular,
         /// One pixel for each step of the longer axis, whatever the width (LIN-2).
         Bresenham,
+        /// A rectangle with smooth edges (SMO-1).
+        RectangularSmooth,
     }
 }
 

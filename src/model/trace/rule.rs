@@ -19,6 +19,10 @@ named! {
         Fog4 = "FOG-4" => Part::Interpolation,
         /// Interpolated vertex colours.
         Int2 = "INT-2" => Part::Interpolation,
+        /// The alpha of smooth edges.
+        Smo1 = "SMO-1" => Part::Interpolation,
+        /// Vertex colours where smooth edges do not cover the centre.
+        Smo2 = "SMO-2" => Part::Interpolation,
         /// Texture coordinates, as weights of the filter.
         Int4 = "INT-4" => Part::Interpolation,
         /// Texture coordinates that are divided by q.

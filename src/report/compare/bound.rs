@@ -11,12 +11,15 @@ use ninebit::trace::Rule;
 const NEAREST: f64 = 127.0 / 255.0;
 
 /// Returns the lowest and highest error, the definition minus the ideal, in steps (for weights in 256ths). Returns `None` where no bound is stated:
-/// the error of TEX-15 depends on how small q becomes, and the taps of TEX-17 depend on that.
+/// the error of SMO-2 depends on how small the triangle is, that of TEX-15 on how small q becomes, and the taps of TEX-17 depend on that.
 pub fn error_range(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
     let policies = &plan.policies;
     let symmetric = |n: f64| Some((-n, n));
     let floor = |slack: f64| Some((-1.0 - slack, slack));
+    let is_outside = plan.draws().iter().any(|draw| draw.assembly.has_smooth_edges());
     match rule {
+        // Weights outside of a triangle have no bound.
+        Rule::Num6 | Rule::Fog2 | Rule::Fog4 | Rule::Int4 | Rule::Tsh7 | Rule::Tsh9 if is_outside => None,
         Rule::Num4 => symmetric(0.5 + 255.0 / 16384.0),
         // The floor to 4096ths, then that of NUM-6.
         Rule::Num6 => floor(2.0 * 255.0 * weights(plan) + 255.0 / 4096.0),
@@ -30,7 +33,9 @@ pub fn error_range(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
         Rule::Int2 => symmetric(2.5 + 2.0 * 255.0 * weights(plan)),
         // A floor, the error of the weights, and the cuts of the terms.
         Rule::Int4 => floor(coordinate_slack(plan)),
-        Rule::Tex12 | Rule::Tex15 | Rule::Tex20 | Rule::Tex9 | Rule::Tex17 => None,
+        // A floor.
+        Rule::Smo1 => floor(1e-6),
+        Rule::Smo2 | Rule::Tex12 | Rule::Tex15 | Rule::Tex20 | Rule::Tex9 | Rule::Tex17 => None,
         // The ideal follows these coordinates, so only the floor and the last bits of float64 remain.
         Rule::Tsh4 | Rule::Tsh6 => floor(1e-6),
         // A quotient by q magnifies the error of the weights, as in TEX-15.

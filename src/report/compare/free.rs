@@ -37,8 +37,8 @@ impl Method for Free {
                 let Some((low, high)) = both.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))) else { continue };
                 for i in low..high {
                     let covered = (inside(definition, i), inside(ideal, i));
-                    let is_stippled = fixed.as_ref().is_some_and(|context| context.is_stippled(i, j));
-                    if covered != (false, false) && !is_stippled {
+                    let is_left_out = fixed.as_ref().is_some_and(|context| context.is_left_out(i, j));
+                    if covered != (false, false) && !is_left_out {
                         let triangle = (fixed.as_ref(), shape.as_ref());
                         pixel(draw, triangle, covered, (i, j), band, counts);
                     }
@@ -56,7 +56,7 @@ impl Method for Free {
 enum Shape<'t> {
     /// A triangle before its vertices are snapped.
     Outline(Outline),
-    /// A line or a point, as the definition has it.
+    /// A line, a point or smooth edges, as the definition has them.
     Stroke(&'t Triangle),
 }
 
@@ -64,8 +64,8 @@ impl<'t> Shape<'t> {
     /// Returns the shape of a triangle, or `None` if it is culled.
     fn new(planned: &PlannedDraw, number: usize, fixed: Option<&'t TriangleContext<'_>>) -> Option<Shape<'t>> {
         match planned.assembly.triangles.figure(number) {
-            Figure::Triangle => outline(planned, number).map(Shape::Outline),
-            Figure::Line | Figure::Point => fixed.map(|context| Shape::Stroke(&context.triangle)),
+            Figure::Triangle if !planned.assembly.smooth_polygons => outline(planned, number).map(Shape::Outline),
+            _ => fixed.map(|context| Shape::Stroke(&context.triangle)),
         }
     }
 
@@ -163,7 +163,7 @@ impl<L: Ideal + Send + Sync> Method for Real<L> {
             let Some(shape) = Shape::new(draw.planned, number, Some(&context)) else { continue };
             for j in rows.0.max(shape.rows().0)..rows.1.min(shape.rows().1) {
                 let (low, high) = shape.span(j, columns);
-                for i in (low..high).filter(|i| !context.is_stippled(*i, j)) {
+                for i in (low..high).filter(|i| !context.is_left_out(*i, j)) {
                     real_side(draw, &context, &shape, (i, j), band, &mut Silent);
                 }
             }

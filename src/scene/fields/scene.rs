@@ -247,9 +247,11 @@ source! {
         hidden_edges: Vec<u32> [or "all are drawn"],
         /// 32 words, `0xff00ff00`, the last of the top row: where a bit is 0, filled triangles have no pixel (STP-1)
         polygon_stipple: Vec<u32> [or "none"],
+        /// filled triangles with smooth edges, one by one (SMO-1)
+        smooth_polygons: bool = false,
         /// width of lines in 1/8 pixel; 0 draws none (LIN-1)
         line_width: u32 [in SIZES, "a line width", rule("LIN-1"), help(NINE_BITS)] = 8,
-        /// how lines become pixels: rectangles, or one pixel for each step of the longer axis, whatever the width (LIN-2). Smooth lines are not known
+        /// how lines become pixels: rectangles, one pixel for each step of the longer axis, whatever the width (LIN-2), or rectangles with smooth edges (SMO-1)
         line_rasterization: Name<state::LineRasterization> = LineRasterization::Rectangular,
         /// size of points in 1/8 pixel (PNT-1)
         point_size: u32 [in SIZES, "a point size", rule("PNT-1"), help(NINE_BITS)] = 8,

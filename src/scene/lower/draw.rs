@@ -129,6 +129,7 @@ fn draw<'a>(
             back: fields.back_polygon_mode(reader),
         },
         polygon_stipple: stipple(reader, &fields.polygon_stipple),
+        smooth_polygons: fields.smooth_polygons(reader),
         lines: lines(reader, fields),
         // Nine bits.
         point_size: fields.point_size(reader) as u16,
@@ -188,11 +189,6 @@ fn clear<'a>(
 
 /// Reads the state of lines.
 fn lines<'a>(reader: &mut Reader<'a>, fields: &source::Draw<'a>) -> Lines {
-    if let Some(raw) = fields.line_rasterization.as_ref().filter(|raw| SMOOTH_LINES.contains(&raw.text.trim())) {
-        let (message, help) = ("what smooth lines cover is not known", "take `Rectangular`, or `Bresenham`");
-        reader.push(finding("NB0402", reader.span(raw), message, "cannot be modelled", help).rule("LIN-1"));
-        return Lines::default();
-    }
     // Nine bits.
     Lines { width: fields.line_width(reader) as u16, rasterization: fields.line_rasterization(reader) }
 }
@@ -210,9 +206,6 @@ fn conversion<'a>(reader: &mut Reader<'a>, fields: &source::Draw<'a>) -> bool {
     reader.needs_nv2a(&fields.convert_yuv, wanted, "NB0344", ("a conversion from YUV", "TEX-19"));
     wanted && reader.profile == Profile::Nv2a
 }
-
-/// Names of smooth lines, which are refused.
-const SMOOTH_LINES: [&str; 2] = ["RectangularSmooth", "Smooth"];
 
 /// Reads the pattern of filled triangles.
 fn stipple<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, Vec<u32>>>) -> Option<PolygonStipple> {

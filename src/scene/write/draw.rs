@@ -147,6 +147,7 @@ fn primitives(fields: &mut Fields, draw: &Draw) {
     if let Some(PolygonStipple(words)) = &draw.polygon_stipple {
         fields.put("polygon_stipple", Node::filled(words.iter().map(|word| Node::word(format!("0x{word:08x}")))));
     }
+    fields.flag("smooth_polygons", draw.smooth_polygons, default.smooth_polygons);
     fields.whole("line_width", draw.lines.width, default.lines.width.into());
     fields.word("line_rasterization", draw.lines.rasterization, default.lines.rasterization);
     fields.whole("point_size", draw.point_size, default.point_size.into());

@@ -103,6 +103,7 @@ mod reading;
 mod rop;
 mod sampling;
 mod shader;
+mod smooth;
 mod stencil;
 mod stroke;
 mod texel;
@@ -142,6 +143,8 @@ pub fn all() -> Vec<&'static dyn Unit> {
         &stroke::SpriteCoordinate,
         &stroke::PolygonEdge,
         &stroke::Stipple,
+        &smooth::SmoothCoverage,
+        &smooth::SmoothColor,
         &clip::Clip,
         &raster::VertexWeights,
         &raster::LinearNumber,

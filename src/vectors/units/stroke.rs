@@ -10,7 +10,7 @@ use ninebit::raster::modes::outer_edges;
 use ninebit::raster::setup::Triangle;
 use ninebit::raster::stroke::{sprite_coordinate, stipples};
 use ninebit::raster::triangles::Triangles;
-use ninebit::state::{DepthFormat, LineRasterization, Lines, PolygonStipple, Profile, ProvokingVertex};
+use ninebit::state::{DepthFormat, LineRasterization, Lines, Named, PolygonStipple, Profile, ProvokingVertex};
 use ninebit::vertex::point::PointParameters;
 
 /// Largest position, 1/16 pixel.
@@ -64,6 +64,9 @@ fn fit_line(ends: &mut [i64], reach: i64, pixel: &mut [i64]) {
     }
 }
 
+/// How lines without smooth edges become pixels.
+const SHARP: &[&str] = LineRasterization::NAMES.split_at(2).0;
+
 /// Coverage of a pixel by a line.
 pub(super) struct LineCoverage;
 
@@ -71,7 +74,7 @@ impl Unit for LineCoverage {
     known_as!(
         "line-coverage", &["LIN-1", "LIN-2"],
         "whether a line of a width in 1/8 pixel between snapped positions (1/16 pixel) covers a pixel; how far it is from its ends, and the second end's weight of colours", Geometry;
-        takes [[Column::choice::<LineRasterization>("cfg.rasterization")], ends(), [Column::unsigned("in.width", 9, 511)], pixel()];
+        takes [[Column::names("cfg.rasterization", SHARP)], ends(), [Column::unsigned("in.width", 9, 511)], pixel()];
         gives [
             Column::results(["mid.e1", "mid.e2"], Kind::Signed(36)),
             Column::result("out.covered", Kind::Unsigned(1)),

@@ -188,7 +188,7 @@ impl Printed<'_> {
             // Stippled pixels are left out one by one.
             let mut open = None;
             for i in from..=to.max(from) {
-                let is_in = i < to && !context.is_stippled(i, j);
+                let is_in = i < to && !context.is_left_out(i, j);
                 match (open, is_in) {
                     (None, true) => open = Some(i),
                     (Some(first), false) => {

@@ -16,6 +16,7 @@ pub(super) fn state(lines: &mut Lines, format: SurfaceFormat, draw: &Draw) -> Re
     let refusals = [
         (draw.window_clip.is_some(), "a window clip"),
         (draw.polygon_stipple.is_some(), "a stipple"),
+        (draw.smooth_polygons, "smooth polygons"),
         (draw.shade_model == ShadeModel::Flat, "flat colours"),
     ];
     if let Some((_, what)) = refusals.iter().find(|(has, _)| *has) {

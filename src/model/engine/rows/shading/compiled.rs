@@ -29,7 +29,7 @@ pub(crate) struct CompiledDraw {
     pub(crate) interpolates: bool,
     /// The texture shader, if there is one.
     pub(crate) shader: Option<Arc<Shader>>,
-    /// Whether the scalar engine draws it, because rows do not sample its textures, or decoding them would not pay.
+    /// Whether the scalar engine draws it, because rows do not sample its textures, decoding them would not pay, or its edges are smooth.
     pub(crate) is_scalar: bool,
     /// Whether all pixels of the quads that a triangle meets are lanes: levels of detail or taps follow from them.
     pub(crate) takes_quads: bool,
