@@ -10,9 +10,9 @@ use std::fmt::Debug;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-const PREFIXES: [&str; 23] = [
+const PREFIXES: [&str; 24] = [
     "NUM", "RAS", "WGT", "INT", "FOG", "DEP", "TEX", "KEY", "TSH", "CMB", "FIN", "ROP", "STN", "CLP", "VTX", "VOL",
-    "SHD", "CYL", "LIN", "PNT", "POL", "STP", "CLR",
+    "SHD", "CYL", "LIN", "PNT", "POL", "STP", "CLR", "SMO",
 ];
 
 /// The entry of one rule.
