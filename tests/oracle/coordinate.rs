@@ -79,8 +79,14 @@ impl Setup {
         [0, 1, 2].map(|n| self.component(sample, set, n))
     }
 
-    fn flat(&self, sample: &Sample, set: usize) -> [Number; 3] {
-        [0, 1, 3].map(|n| self.component(sample, set, n))
+    /// TEX-15: returns q, or `None` where it is 1 at the vertices (INT-4).
+    fn q(&self, sample: &Sample, set: usize) -> Option<Number> {
+        let is_one = self.vertices.iter().all(|vertex| vertex.texture_coordinates[set][3] == 1.0);
+        (!is_one).then(|| self.component(sample, set, 3))
+    }
+
+    fn plane(&self, sample: &Sample, set: usize) -> [Number; 2] {
+        [0, 1].map(|n| self.component(sample, set, n))
     }
 }
 
@@ -90,8 +96,8 @@ impl Place {
     pub fn at(&self, setup: &Setup, sample: &Sample, size: [u32; 2]) -> (usize, [i128; 2]) {
         match self {
             Place::Set(set) | Place::Layer(set) => {
-                let q = setup.component(sample, *set, 3);
-                (0, [0, 1].map(|a| ratio(setup.component(sample, *set, a), q, size[a])))
+                let (st, q) = (setup.plane(sample, *set), setup.q(sample, *set));
+                (0, [0, 1].map(|a| ratio(st[a], q, size[a])))
             }
             Place::Moved(set, by) => {
                 (0, [0, 1].map(|a| limited(moved(setup.component(sample, *set, a), by[a], 256 * i128::from(size[a])))))
@@ -102,10 +108,11 @@ impl Place {
             Place::Vector(v) => finite(*v).map_or((0, [0, 0]), |v| on_face(v, size[0])),
             Place::Sprite(d, n) => (0, [0, 1].map(|a| sprite(d[a], *n, 256 * i128::from(size[a])))),
             Place::Face(set) => {
-                let ([s, t, q], half) = (setup.flat(sample, *set), 128 * i128::from(size[0]));
-                let on = |n: Number| match q.m {
-                    0 => n.m.signum() << 23,
-                    _ => quotient(n, q).floor(half).clamp(-1 << 23, 1 << 23),
+                let ([s, t], half) = (setup.plane(sample, *set), 128 * i128::from(size[0]));
+                let q = setup.q(sample, *set);
+                let on = |n: Number| match q {
+                    Some(q) if q.m == 0 => n.m.signum() << 23,
+                    q => over(n, q).floor(half).clamp(-1 << 23, 1 << 23),
                 };
                 (0, [half + on(s), half + on(-t)])
             }
@@ -118,7 +125,7 @@ impl Place {
     /// Returns another component of a coordinate set in the same way as [`Place::at`] returns s and t.
     pub fn along(&self, setup: &Setup, sample: &Sample, n: usize, size: u32) -> Option<i128> {
         let Place::Set(set) = self else { return None };
-        Some(ratio(setup.component(sample, *set, n), setup.component(sample, *set, 3), size))
+        Some(ratio(setup.component(sample, *set, n), setup.q(sample, *set), size))
     }
 
     /// TEX-11: returns the face on which a quad is measured.
@@ -144,15 +151,15 @@ impl Place {
         };
         match self {
             Place::Face(set) => {
-                let ([s, t, q], half) = (setup.flat(sample, *set), scale[0] >> 1);
-                (q.m > 0).then(|| [s, -t].map(|n| half + quotient(n, q).floor(half)))
+                let ([s, t], half, q) = (setup.plane(sample, *set), scale[0] >> 1, setup.q(sample, *set));
+                q.is_none_or(|q| q.m > 0).then(|| [s, -t].map(|n| half + over(n, q).floor(half)))
             }
             Place::Plane(set) => flat(setup.vector(sample, *set)),
             Place::PlaneVector(v) => flat(finite(*v)?),
             Place::Ends(f) => Some(ends(*f).map(|end| scale[0] * end)),
             Place::Set(set) | Place::Layer(set) => {
-                let q = setup.component(sample, *set, 3);
-                (q.m > 0).then(|| [0, 1].map(|a| quotient(setup.component(sample, *set, a), q).floor(scale[a])))
+                let (st, q) = (setup.plane(sample, *set), setup.q(sample, *set));
+                q.is_none_or(|q| q.m > 0).then(|| [0, 1].map(|a| over(st[a], q).floor(scale[a])))
             }
             Place::Moved(set, by) => Some([0, 1].map(|a| moved(setup.component(sample, *set, a), by[a], scale[a]))),
             Place::Direction(set) => on(setup.vector(sample, *set)),
@@ -183,11 +190,16 @@ fn limited(u: i128) -> i128 {
 }
 
 /// INT-4, TEX-15: returns floor(256 size s / q).
-fn ratio(s: Number, q: Number, size: u32) -> i128 {
-    if q.m == 0 {
+fn ratio(s: Number, q: Option<Number>, size: u32) -> i128 {
+    if q.is_some_and(|q| q.m == 0) {
         return s.m.signum() * LIMIT;
     }
-    limited(quotient(s, q).floor(256 * i128::from(size)))
+    limited(over(s, q).floor(256 * i128::from(size)))
+}
+
+/// INT-4, TEX-15: returns s / q for a q other than 0.
+fn over(s: Number, q: Option<Number>) -> Number {
+    q.map_or(s, |q| quotient(s, q))
 }
 
 /// TEX-15: returns s / q for a q other than 0.
