@@ -176,7 +176,7 @@ impl Helper {
             Helper::Depth => ("depth", "a b + c d + e f, each term to the 29th bit of the largest", "DEP-1"),
             Helper::Floor => ("floored", "floor(size a 2^power), up to a limit", "INT-4"),
             Helper::FarFloor => ("far_floored", "floor(size a 2^power), up to a limit", "TEX-11"),
-            Helper::Quotient => ("quotient", "a / b by the reciprocal of b, to 24 bits; a if b is 0", "TEX-15"),
+            Helper::Quotient => ("cut_quotient", "a / b by the reciprocal of b, to 24 bits; a if b is 0", "TEX-15"),
             Helper::Ratio => ("ratio", "floor(size a 2^8), up to a limit; the limit if b is 0", "TEX-15"),
             Helper::Face => ("face", "floor(2^7 size (1 + a)); 0 if b is not positive", "TEX-12"),
             Helper::FarFace => ("far_face", "floor(2^15 size (1 + a)); 0 if b is not positive", "TEX-11, TEX-12"),
