@@ -375,3 +375,21 @@ impl WholeSyntax for glsl::Glsl {
         )
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::helper::Helper;
+
+    /// WGSL refuses two functions of one name.
+    #[test]
+    fn functions_of_heads_have_names_of_their_own() {
+        for helper in Helper::ALL {
+            let name = format!("ninebit_{}(", helper.about().0);
+            let declares = |line: &str| !line.starts_with(' ') && line.contains(&name);
+            for head in [WGSL_HEAD, GLSL_HEAD] {
+                assert!(!head.lines().any(declares), "{name} is a function of every shader, too");
+            }
+        }
+    }
+}
