@@ -34,8 +34,9 @@ fn floor(canvas: &mut Canvas, w_buffer: bool, range: DepthRange, bias: f32) {
     canvas.draw(textured(corners, DepthTest { offset, ..test(range) }));
 }
 
-/// Adds those frames of Depth_Clamp whose vertices lie in front of the eye.
+/// Adds the frames of Depth_Clamp.
 pub(super) fn clamped(frames: &mut Frames) {
+    equal(frames);
     let buffers = [(false, [14_988_020.0, 15_869_663.0], -500_000.0), (true, [9.01, 16.49], -5.0)];
     for (w_buffer, limits, offset) in buffers {
         for [clamps, biased, whole] in [0, 1, 2, 3, 4, 5, 6, 7].map(|n: u8| [n & 4 != 0, n & 2 != 0, n & 1 != 0]) {
@@ -52,6 +53,33 @@ pub(super) fn clamped(frames: &mut Frames) {
     }
 }
 
+/// Adds those frames of Depth_Clamp that draw a floor twice: the second time, in red, where its depths are the same. Half of the floor lies behind the
+/// eye.
+fn equal(frames: &mut Frames) {
+    for (buffer, w_buffer, scale, lowest) in [("", false, 1.0_f32, 14_988_020.0), ("WBuf_", true, 100.0, 255.99)] {
+        for offset in [0.685_f32, 0.822, 3.015, 3.216] {
+            frames.paint(format!("depth_equal_{buffer}Ofs{offset}"), 0xfe25_1135, move |canvas| {
+                canvas.frame_buffer().depth = Some(FAR_DEPTHS);
+                let fields = checker([argb(0xff00_ffff), argb(0xff00_0000)], 8);
+                canvas.texture(&images::in_texels(images::texture(TextureFormat::A8R8G8B8, [256, 256], fields)));
+                let [side, y] = [10.0, -2.5].map(|n| n * scale);
+                let [far, near] = [200.0 * scale - offset, -20.0 + offset];
+                let corners = [[-side, y, far], [side, y, far], [side, y, near], [-side, y, near]];
+                let test = |function, clamps| {
+                    let range = DepthRange { lowest, highest: DEEPEST, clamps, drops_triangles: false };
+                    DepthTest { w_buffer, ..in_steps(function, true, Some(range)) }
+                };
+                canvas.draw(textured(corners, test(CompareFunction::Less, false)));
+                let red = VertexColor::Floats([1.0, 0.0, 0.0, 1.0]);
+                let Draw { vertices, .. } = textured(corners, test(CompareFunction::Less, false));
+                let vertices = vertices.iter().map(|vertex| Vertex { diffuse: red, ..vertex }).collect();
+                let depth_test = Some(test(CompareFunction::Equal, true));
+                canvas.draw(Draw { depth_test, ..draw(Topology::Quads, vertices) });
+            });
+        }
+    }
+}
+
 /// How z and w vary over the quads of a block.
 #[derive(Clone, Copy)]
 enum Block {
@@ -63,8 +91,8 @@ enum Block {
     WOfTen,
 }
 
-/// Adds a block of 40 quads of 16 x 16 pixels, whose depths or w grow from quad to quad.
-fn block([left, top]: [f32; 2], block: Block, vertices: &mut Vec<Vertex>) {
+/// Adds a block of 40 quads of 16 x 16 pixels, whose depths or w grow from quad to quad. `place` yields the positions from those of the window.
+fn block([left, top]: [f32; 2], block: Block, place: impl Fn([f32; 4]) -> [f32; 4], vertices: &mut Vec<Vertex>) {
     let step = 150.0_f32 / 41.0;
     let (mut z, mut w) = (0.0_f32, 0.0_f32);
     for row in 0..8_u8 {
@@ -101,8 +129,9 @@ fn block([left, top]: [f32; 2], block: Block, vertices: &mut Vec<Vertex>) {
             };
             for (side, dx, dy) in [(0, 0.0, 0.0), (1, 16.0, 0.0), (1, 16.0, 16.0), (0, 0.0, 16.0)] {
                 let [r, g, b] = colors[side];
+                let [x, y, z, w] = place([x + dx, y + dy, zs[side], ws[side]]);
                 // The chip replaces a w of 0 by a small number.
-                let position = [x + dx, y + dy, zs[side], ws[side].max(f32::EPSILON * 8.0)];
+                let position = [x, y, z, w.max(f32::EPSILON * 8.0)];
                 let diffuse = VertexColor::Floats([r, g, b, 1.0]);
                 vertices.push(Vertex { position, diffuse, ..Vertex::default() });
             }
@@ -112,8 +141,8 @@ fn block([left, top]: [f32; 2], block: Block, vertices: &mut Vec<Vertex>) {
     }
 }
 
-/// Adds those frames of ZMinMaxControl whose vertices are given in window coordinates.
-pub(super) fn controls(frames: &mut Frames) {
+/// Returns the quads of ZMinMaxControl.
+fn blocks(place: impl Fn([f32; 4]) -> [f32; 4]) -> Draw {
     let mut vertices = Vec::new();
     let columns = [90.0_f32, 90.0 + 126.72 + 90.0, 90.0 + 126.72 + 90.0 + 126.72 + 90.0];
     for (column, [upper, lower]) in columns.into_iter().zip([
@@ -121,20 +150,33 @@ pub(super) fn controls(frames: &mut Frames) {
         [Block::SmallW, Block::Ramps],
         [Block::Growing, Block::WOfTen],
     ]) {
-        block([column, 60.0], upper, &mut vertices);
-        block([column, 252.0], lower, &mut vertices);
+        block([column, 60.0], upper, &place, &mut vertices);
+        block([column, 252.0], lower, &place, &mut vertices);
     }
-    let quads = draw(Topology::Quads, vertices);
-    for (prefix, drops_triangles) in [("", false), ("NEARFAR_", true)] {
-        for (mode, clamps) in [("ZCULL", false), ("ZCLAMP", true)] {
-            for (buffer, w_buffer) in [("", false), ("WBuf_", true)] {
-                let range = DepthRange { lowest: 10.0, highest: 100.0, clamps, drops_triangles };
-                let depth_test = in_steps(CompareFunction::Always, false, Some(range));
-                let depth_test = Some(DepthTest { w_buffer, ..depth_test });
-                let drawn = one(0xff22_2228, None, Draw { depth_test, ..quads.clone() });
-                // The control bit CULL_IGNORE_W changes nothing here.
-                for suffix in ["", "_IgnW"] {
-                    frames.push(format!("Ctrl_{buffer}{prefix}{mode}{suffix}"), drawn.clone());
+    draw(Topology::Quads, vertices)
+}
+
+/// Adds the frames of ZMinMaxControl.
+pub(super) fn controls(frames: &mut Frames) {
+    let matrix = space::product(space::moved_by([0.0, 0.0, -3.0]), space::parallel_window([10.0, 100.0]));
+    let inverse = space::inverse(&matrix);
+    // The program multiplies the points of the world by w.
+    let through_world = |[x, y, z, w]: [f32; 4]| {
+        let [x, y, z, _] = space::unproject_depth([x, y, z, 1.0], &inverse);
+        space::fixed_function_to([x * w, y * w, z * w, w], &matrix)
+    };
+    for (kind, quads) in [("Ctrl", blocks(|place| place)), ("CtrlFixed", blocks(through_world))] {
+        for (prefix, drops_triangles) in [("", false), ("NEARFAR_", true)] {
+            for (mode, clamps) in [("ZCULL", false), ("ZCLAMP", true)] {
+                for (buffer, w_buffer) in [("", false), ("WBuf_", true)] {
+                    let range = DepthRange { lowest: 10.0, highest: 100.0, clamps, drops_triangles };
+                    let depth_test = in_steps(CompareFunction::Always, false, Some(range));
+                    let depth_test = Some(DepthTest { w_buffer, ..depth_test });
+                    let drawn = one(0xff22_2228, None, Draw { depth_test, ..quads.clone() });
+                    // The control bit CULL_IGNORE_W changes nothing here.
+                    for suffix in ["", "_IgnW"] {
+                        frames.push(format!("{kind}_{buffer}{prefix}{mode}{suffix}"), drawn.clone());
+                    }
                 }
             }
         }

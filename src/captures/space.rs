@@ -89,10 +89,24 @@ pub(super) fn window_to(deepest: f64) -> Matrix {
     projection[2][2] = f64::from(depth);
     projection[2][3] = 1.0;
     projection[3][2] = f64::from(-near * depth);
+    product(projection, viewport(deepest))
+}
+
+/// Returns the matrix of a parallel projection to window coordinates, with depths of 0 to 65,535 between two distances.
+pub(super) fn parallel_window([near, far]: [f32; 2]) -> Matrix {
+    let depth = 1.0 / (near - far);
+    let mut projection = IDENTITY;
+    (projection[0][0], projection[1][1]) = (f64::from(2.0_f32 / 640.0), f64::from(2.0_f32 / 480.0));
+    (projection[2][2], projection[3][2]) = (f64::from(-depth), f64::from(near * depth));
+    product(projection, viewport(65535.0))
+}
+
+/// Returns the matrix from clip space to window coordinates.
+fn viewport(deepest: f64) -> Matrix {
     let mut viewport = IDENTITY;
     (viewport[0][0], viewport[1][1], viewport[2][2]) = (320.0, -240.0, deepest);
     (viewport[3][0], viewport[3][1]) = (320.0, 240.0);
-    product(projection, viewport)
+    viewport
 }
 
 /// Returns the matrix from world to eye coordinates.

@@ -1,6 +1,7 @@
 //! Reasons why a command stops, as the program `ninebit` reports them.
 
 use ninebit::plan::PlanError;
+use ninebit::raster::assemble::ScalarPart;
 use ninebit::shown;
 use ninebit_captures::verdict::WrongPicture;
 use ninebit_files::catch_panic::Panic;
@@ -48,15 +49,16 @@ impl Failure {
         Failure::Message { code: Some("NB1702"), exit: 5, message, help }
     }
 
-    /// Returns whether a draw has smooth edges, which are not printed.
+    /// Returns whether a draw is not printed, since the scalar engine alone draws it.
     pub fn is_unprinted(&self) -> bool {
         matches!(self, Failure::Message { code: Some("NB0402"), .. })
     }
 
-    /// Returns the failure for a draw with smooth edges, which are not printed.
-    pub(crate) fn smooth_edges(draw: usize) -> Failure {
-        let message = format!("the smooth edges of draw {draw} are not printed");
-        let help = "leave `smooth_polygons` and `RectangularSmooth` out, or draw it with `ninebit render`".to_string();
+    /// Returns the failure for a draw that the scalar engine alone draws.
+    pub(crate) fn scalar(draw: usize, part: ScalarPart) -> Failure {
+        let [part, help] = part.words();
+        let message = format!("the {part} of draw {draw} are not printed");
+        let help = format!("{help}, or draw it with `ninebit render`");
         Failure::Message { code: Some("NB0402"), exit: 3, message, help }
     }
 

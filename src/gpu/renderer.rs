@@ -149,7 +149,7 @@ impl<'a> Renderer<'a> {
     /// Prints the shaders of a scene's draws, compiles them and fills buffers.
     ///
     /// # Errors
-    /// Limits of the adapter; what its driver says; smooth edges; state that no words set, if they are read.
+    /// Limits of the adapter; what its driver says; what the scalar engine alone draws; state that no words set, if they are read.
     pub fn new(gpu: &'a Gpu, scene: &Scene, plan: &'a Plan, text: Text) -> Result<Renderer<'a>, Failure> {
         let cleared = cleared(plan);
         let mut targets = Vec::new();
@@ -168,8 +168,8 @@ impl<'a> Renderer<'a> {
         let mut builder = Builder { gpu, scene, plan, cleared: &cleared, targets: &targets, layout, pipelines, tiles };
         let options = Options { policies: plan.policies, ..Options::default() };
         for (number, draw) in plan.draws().iter().enumerate() {
-            if draw.assembly.has_smooth_edges() {
-                return Err(Failure::smooth_edges(number));
+            if let Some(part) = draw.assembly.scalar_part() {
+                return Err(Failure::scalar(number, part));
             }
             works.extend(match text {
                 Text::OfDraw => builder.own(number, draw, &Function::of_pixel(scene, plan, number, &options))?,

@@ -191,7 +191,7 @@ fn whole(
     let plan = compiled(scene, PlanOptions { policies: options.policies, prune: true })?;
     let mut made = Vec::new();
     for (number, draw) in draws {
-        refuse_smooth(*number, &plan)?;
+        refuse_scalar(*number, &plan)?;
         let function = Function::of_pixel(scene, &plan, *number, &options);
         let setup = Setup::new(&plan, &plan.draws()[*number], &function);
         made.push((*number, shown::name(&draw.name), function, setup));
@@ -237,14 +237,12 @@ fn compiled(scene: &Scene, options: PlanOptions) -> Result<Plan, Failure> {
     })
 }
 
-/// Refuses a draw with smooth edges: their samples are not printed.
-fn refuse_smooth(number: usize, plan: &Plan) -> Result<(), Failure> {
-    if !plan.draws()[number].assembly.has_smooth_edges() {
-        return Ok(());
-    }
-    let message = format!("the smooth edges of draw {number} are not printed");
-    let help = "leave `smooth_polygons` and `RectangularSmooth` out, or print its `--fragment`";
-    Err(Failure::invalid("NB0402", message, help))
+/// Refuses a draw that the scalar engine alone draws.
+fn refuse_scalar(number: usize, plan: &Plan) -> Result<(), Failure> {
+    let Some(part) = plan.draws()[number].assembly.scalar_part() else { return Ok(()) };
+    let [part, help] = part.words();
+    let message = format!("the {part} of draw {number} are not printed");
+    Err(Failure::invalid("NB0402", message, format!("{help}, or print its `--fragment`")))
 }
 
 /// Returns draws, or a program of its own, as functions.
@@ -265,7 +263,7 @@ fn functions(
     // Nothing is pruned: with `--uniform` other constants may be passed.
     let plan = compiled(scene, PlanOptions { policies: options.policies, prune: false })?;
     if !(alone || arguments.fragment) {
-        draws.iter().try_for_each(|(number, _)| refuse_smooth(*number, &plan))?;
+        draws.iter().try_for_each(|(number, _)| refuse_scalar(*number, &plan))?;
     }
     let made = |(number, draw): &(usize, &Draw)| {
         if alone {

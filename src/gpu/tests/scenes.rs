@@ -58,7 +58,7 @@ fn hold(gpu: &Gpu, scene: &Scene, policies: Policies, what: &str) -> Result<(), 
 fn hold_by(gpu: &Gpu, (scene, what): (&Scene, &str), policies: Policies, text: Text) -> Result<(), Failed> {
     let plan = Plan::compile(scene, &PlanOptions { policies, ..PlanOptions::default() }).unwrap();
     let plan = text.plan(scene, &plan).unwrap();
-    if plan.draws().iter().any(|draw| draw.assembly.has_smooth_edges()) {
+    if plan.draws().iter().any(|draw| draw.assembly.scalar_part().is_some()) {
         let failure = Renderer::new(gpu, scene, &plan, text).map(|_| ()).unwrap_err();
         return if failure.is_unprinted() { Ok(()) } else { Err(failure.text().into()) };
     }

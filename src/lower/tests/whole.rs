@@ -24,6 +24,7 @@ use ninebit::engine::{RenderOptions, render};
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::random::Random;
+use ninebit::raster::assemble::ScalarPart;
 use ninebit::state::{Policies, Scene};
 use ninebit_methods::class::Family;
 use ninebit_program::registers::unit;
@@ -91,8 +92,8 @@ impl Way {
 /// Why it is left out.
 fn hold(scene: &Scene, policies: Policies, (way, programs): (Way, &mut Programs), what: &str) -> Result<(), String> {
     let plan = Plan::compile(scene, &PlanOptions { policies, prune: !way.is_generic() }).unwrap();
-    if plan.draws().iter().any(|draw| draw.assembly.has_smooth_edges()) {
-        return Err("smooth edges".to_string());
+    if let Some(part) = plan.draws().iter().find_map(|draw| draw.assembly.scalar_part()) {
+        return Err(part.words()[0].to_string());
     }
     let printed = Printed::new(scene, &plan);
     let folder = tempfile::tempdir().unwrap();
@@ -171,7 +172,10 @@ fn hold_captured(way: Way) {
         let name = format!("{}/{}", frame.suite, frame.name);
         match hold(&scene, Policies::DEFAULT, (way, &mut programs), &name) {
             Ok(()) => drawn += 1,
-            Err(reason) => assert_eq!(reason, "smooth edges", "{name}"),
+            Err(reason) => {
+                let parts = [ScalarPart::SmoothEdges, ScalarPart::FarVertices];
+                assert!(parts.iter().any(|part| part.words()[0] == reason), "{name}: {reason}");
+            }
         }
     }
     println!("{drawn} frames");

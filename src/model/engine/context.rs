@@ -4,7 +4,7 @@ use crate::plan::{Plan, PlannedDraw};
 use crate::raster::assemble::Corner;
 use crate::raster::depth::DepthPlane;
 use crate::raster::fog::FogPlane;
-use crate::raster::setup::{Triangle, clockwise_area, is_front};
+use crate::raster::setup::{Triangle, area_seen, clockwise_area, is_front};
 use crate::raster::stroke::{self, Figure};
 use crate::state::*;
 use crate::texture::coordinates::Coordinates;
@@ -89,10 +89,12 @@ impl<'a> TriangleContext<'a> {
         (bottom > rows.0.max(top)) & (top < rows.1) & (left < right) & is_drawn
     }
 
-    /// Returns the doubled area of triangle `number` of a draw, which is positive if it turns clockwise on the screen.
+    /// Returns the doubled area of triangle `number` of a draw, which is positive if it turns clockwise for the viewer.
     pub(super) fn clockwise_area(draw: &PlannedDraw, number: usize) -> i64 {
-        let (x, y) = positions(&corners(draw, number));
-        clockwise_area(x, y)
+        let corners = corners(draw, number);
+        let (x, y) = positions(&corners);
+        let area = clockwise_area(x, y);
+        if draw.assembly.is_far { area_seen(area, corners.map(|corner| corner.w)) } else { area }
     }
 
     /// Returns whether a triangle of that [area](Self::clockwise_area) is culled.
@@ -123,6 +125,9 @@ impl<'a> TriangleContext<'a> {
                 self.triangle.place_corners(x, y);
                 if draw.assembly.smooth_polygons {
                     self.triangle = self.triangle.smooth();
+                }
+                if draw.assembly.is_far {
+                    self.triangle.turn_behind(self.corners().map(|corner| corner.w));
                 }
             }
             Figure::Line => self.triangle.place_line([[x[1], y[1]], [x[2], y[2]]], draw.assembly.lines),

@@ -3,14 +3,14 @@
 
 use std::sync::Arc;
 
-use super::setup::centres;
+use super::setup::{EVERYWHERE, centres};
 use super::smooth;
 use super::stroke::{self, Figure};
 pub(crate) use super::triangles::{IndexedTriangle, Triangles};
-use super::{LARGEST_W, SMALLEST_W, modes, project};
+use super::{FAR_GUARD, FARTHEST_W, LARGEST_W, SMALLEST_W, modes, project};
 use crate::number::convert::{snap, vertex_color};
 use crate::state::{
-    Draw, LineRasterization, Lines, Positions, TriangleVertices, Vertex, VertexColor, Vertices, Viewport,
+    Draw, LineRasterization, Lines, PolygonModes, Positions, TriangleVertices, Vertex, VertexColor, Vertices, Viewport,
 };
 
 /// The values of a vertex that triangle set-up reads, converted as on the chip.
@@ -46,6 +46,27 @@ pub struct Assembly {
     pub point_size: u16,
     /// Size of the point at each vertex of the draw, in place of that.
     pub point_sizes: Option<Arc<[u16]>>,
+    /// Whether a vertex lies behind the eye (RAS-8), or outside of the limits for all figures (RAS-0).
+    pub is_far: bool,
+}
+
+/// What the scalar engine alone draws: the lanes of the fast engine and the printed texts do not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ScalarPart {
+    /// Smooth edges (SMO-1).
+    SmoothEdges,
+    /// Vertices behind the eye (RAS-8) or far away (RAS-0).
+    FarVertices,
+}
+
+impl ScalarPart {
+    /// Returns the words of a message that refuses it, and of its help.
+    pub fn words(self) -> [&'static str; 2] {
+        match self {
+            ScalarPart::SmoothEdges => ["smooth edges", "leave `smooth_polygons` and `RectangularSmooth` out"],
+            ScalarPart::FarVertices => ["vertices behind the eye or far away", "cut the triangles at the guard band"],
+        }
+    }
 }
 
 impl Assembly {
@@ -53,6 +74,8 @@ impl Assembly {
     pub(crate) fn area(&self, number: usize) -> u64 {
         let [a, b, c] = self.positions(number);
         match self.triangles.figure(number) {
+            // All that it might cover.
+            Figure::Triangle if self.reaches_everywhere(number) => ((EVERYWHERE.1 - EVERYWHERE.0) as u64).pow(2),
             // Twice the area in 1/256 square pixel.
             Figure::Triangle => ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])).unsigned_abs() / 512,
             Figure::Line => {
@@ -70,6 +93,7 @@ impl Assembly {
     pub(crate) fn bounds(&self, number: usize, axis: usize) -> (i64, i64) {
         let all = self.positions(number);
         match self.triangles.figure(number) {
+            Figure::Triangle if self.reaches_everywhere(number) => EVERYWHERE,
             Figure::Triangle => {
                 let centres = centres(all.map(|position| position[axis]));
                 if self.smooth_polygons { smooth::widened(centres) } else { centres }
@@ -83,6 +107,12 @@ impl Assembly {
     pub fn size_of(&self, number: usize) -> u16 {
         let vertex = self.triangles.vertices(number)[1] as usize;
         self.point_sizes.as_ref().map_or(self.point_size, |sizes| sizes[vertex])
+    }
+
+    /// RAS-8: returns whether a vertex of a triangle lies behind the eye.
+    #[inline(always)]
+    fn reaches_everywhere(&self, number: usize) -> bool {
+        self.is_far && self.triangles.vertices(number).iter().any(|v| self.corners[*v as usize].w < 0.0)
     }
 
     /// Returns x and y of a triangle's vertices, in 1/16 pixel.
@@ -134,6 +164,14 @@ impl Assembly {
                 Figure::Line => smooth_lines,
                 Figure::Point => false,
             })
+    }
+
+    /// Returns what there is for the scalar engine alone.
+    pub fn scalar_part(&self) -> Option<ScalarPart> {
+        match self.has_smooth_edges() {
+            true => Some(ScalarPart::SmoothEdges),
+            false => self.is_far.then_some(ScalarPart::FarVertices),
+        }
     }
 
     /// Returns the vertices of triangle `number`.
@@ -199,9 +237,14 @@ fn finish(
         }
     }
     let given = vertices.len() - blamed.len();
-    let outside = (0..vertices.len()).filter(|v| used[*v] && !in_range(vertices.position(*v)));
+    let may_be_far = may_be_far(draw, &triangles);
+    let mut is_far = false;
     let mut errors: Vec<PositionError> = Vec::new();
-    for v in outside {
+    for v in (0..vertices.len()).filter(|v| used[*v] && !in_range(vertices.position(*v))) {
+        if may_be_far && in_far_range(vertices.position(v), draw.perspective) {
+            is_far = true;
+            continue;
+        }
         let vertex = if v < given { v } else { blamed[v - given] };
         if errors.iter().all(|error| error.vertex != vertex) {
             errors.push(PositionError { vertex, window: vertices.position(v) });
@@ -216,7 +259,7 @@ fn finish(
     let corners = used.iter().enumerate().map(|(v, used)| corner(&vertices, v, *used)).collect();
     let Draw { smooth_polygons, lines, point_size, .. } = *draw;
     let point_sizes = draw.point_sizes.clone();
-    Ok(Assembly { vertices, corners, triangles, clipping, smooth_polygons, lines, point_size, point_sizes })
+    Ok(Assembly { vertices, corners, triangles, clipping, smooth_polygons, lines, point_size, point_sizes, is_far })
 }
 
 fn corner(vertices: &Vertices, index: usize, used: bool) -> Corner {
@@ -240,6 +283,20 @@ fn color_bytes(color: VertexColor) -> [u8; 4] {
 /// Returns whether a window position is within RAS-0.
 fn in_range(p: [f32; 4]) -> bool {
     p.iter().all(|n| n.is_finite()) && project::in_band(p) && (SMALLEST_W..=LARGEST_W).contains(&p[3])
+}
+
+/// Returns whether vertices may lie [far away](in_far_range): the figures are filled triangles that were given in window coordinates.
+fn may_be_far(draw: &Draw, triangles: &Triangles) -> bool {
+    let are_triangles = || (0..triangles.len()).all(|number| triangles.figure(number) == Figure::Triangle);
+    let are_filled = draw.polygon_modes == PolygonModes::FILL && !draw.smooth_polygons;
+    matches!(draw.positions, Positions::Window) && are_filled && are_triangles()
+}
+
+/// Returns whether a window position is within RAS-0 for filled triangles. Those behind the eye need perspective (RAS-8).
+fn in_far_range([x, y, z, w]: [f32; 4], perspective: bool) -> bool {
+    let in_guard = |n: f32| n.abs() * 16.0 < FAR_GUARD as f32;
+    let w_in_range = (1.0 / FARTHEST_W..=FARTHEST_W).contains(&w.abs()) && (perspective || w > 0.0);
+    z.is_finite() && in_guard(x) && in_guard(y) && w_in_range
 }
 
 /// Number of new vertices that are converted to columns at a time.

@@ -4,9 +4,9 @@
 //! perspective, before the dominant one becomes the rest of the others.
 
 use super::binary::Binary;
-use super::setup::Triangle;
+use super::setup::{Triangle, signed_ratios};
 use super::stroke::Figure;
-use super::weights::{Linear, Number, Weights, difference, edge_numbers, outer_weights_by, ratios, shares};
+use super::weights::{Linear, Number, Weights, difference, edge_numbers, outer_weights_by, shares};
 use crate::number::Integer;
 use crate::number::convert::{align, depth as fraction, split};
 use crate::state::{DepthFormat, DepthRange, DepthTest, PolygonOffset, VertexDepths};
@@ -195,8 +195,7 @@ pub fn interpolate(e: [i64; 3], z: [f32; 3]) -> Binary {
 
 /// DEP-6: returns the depth of vertices with these w.
 fn interpolate_w(e: [i64; 3], w: [f32; 3]) -> Binary {
-    let ratios = ratios(w.map(Binary::new));
-    w_depth(e.map(Binary::from_edge), ratios, Linear::new(w), cut_rest)
+    w_depth(e.map(Binary::from_edge), signed_ratios(w), Linear::new(w), cut_rest)
 }
 
 /// DEP-6: returns w_1 + b_0 (w_0 - w_1) + b_2 (w_2 - w_1) with perspective weights, each term cut as in DEP-1. The dominant weight is what `cut_rest` makes

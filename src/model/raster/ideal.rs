@@ -2,7 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "the real-number reference; it never feeds a stored byte")]
 
 use super::fog::not_finite;
-use super::setup::Triangle;
+use super::setup::{EVERYWHERE, Triangle};
 use super::stroke::Figure;
 use crate::state::{DepthFormat, DepthTest, FogFunction, FogMode, PolygonOffset, VertexDepths};
 
@@ -179,12 +179,16 @@ impl Outline {
         }
         let edges = edges.map(|edge| edge.map(|n| n * area.signum()));
         let (low, high) = (y[0].min(y[1]).min(y[2]), y[0].max(y[1]).max(y[2]));
+        let rows = ((low - 0.5).floor() as i64, (high - 0.5).ceil() as i64 + 1);
+        // RAS-8, as the triangle has it.
+        let behind = positions.map(|p| p[3] < 0.0);
+        let inside = [0, 1, 2].map(|k| if behind[k] { edges[k].map(|n| -n) } else { edges[k] });
         Some(Outline {
-            edges,
-            owns: edges.map(|[a, b, _]| a > 0.0 || (a == 0.0 && b > 0.0)),
-            reciprocals: positions.map(|p| if perspective { 1.0 / f64::from(p[3]) } else { 1.0 }),
-            rows: ((low - 0.5).floor() as i64, (high - 0.5).ceil() as i64 + 1),
-            counter_clockwise: area < 0.0,
+            edges: inside,
+            owns: inside.map(|[a, b, _]| a > 0.0 || (a == 0.0 && b > 0.0)),
+            reciprocals: positions.map(|p| if perspective { 1.0 / f64::from(p[3]).abs() } else { 1.0 }),
+            rows: if behind == [false; 3] { rows } else { EVERYWHERE },
+            counter_clockwise: (area < 0.0) ^ behind[0] ^ behind[1] ^ behind[2],
         })
     }
 

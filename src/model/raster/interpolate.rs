@@ -58,12 +58,12 @@ impl<'a> Sample<'a> {
     /// Returns whether the sample lies outside, where smooth edges may reach.
     #[inline]
     pub fn is_outside(&self) -> bool {
-        (self.e[0] | self.e[1] | self.e[2]) < 0
+        self.triangle.is_outside(self.e)
     }
 
-    /// Returns whether the sample lies behind the viewer, where the sum of the edge numbers is not positive. No sample inside of the triangle does.
+    /// Returns whether the sample lies behind the viewer. No sample inside of the triangle does.
     pub fn is_behind(&self) -> bool {
-        self.weights().sum.mantissa <= 0
+        self.triangle.is_behind(self.weights().sum.mantissa)
     }
 }
 

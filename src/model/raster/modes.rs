@@ -62,7 +62,7 @@ fn area(draw: &Draw, vertices: [u32; 3]) -> Option<i64> {
             polygon.iter().map(|vertex| project::window(vertex.position, viewport)).collect()
         }
     };
-    if !polygon.iter().all(|position| project::in_band(*position)) {
+    if !polygon.iter().all(|position| project::in_band(*position) && position[3] > 0.0) {
         return None;
     }
     let at = |n: usize, axis: usize| snap(polygon[n][axis]);

@@ -136,7 +136,7 @@ pub(crate) fn ratios<O: Observer>(block: &str, triangle: &Triangle, taken: [f32;
     });
     for k in [0, 2] {
         let step = |name, value| number_step(block, "WGT-1", name, value);
-        let reciprocal = step(format!("w{k}.reciprocal"), Binary::new(taken[k]).reciprocal::<true>());
+        let reciprocal = step(format!("w{k}.reciprocal"), Binary::new(taken[k]).reciprocal::<false>());
         let reciprocal = observer.tell(reciprocal.by("reciprocal", vec![w[k].clone()]));
         observer.step(step(format!("r{k}"), ratios[k]).by("cut_24_product", vec![w[1].clone(), reciprocal]));
     }

@@ -1,6 +1,6 @@
 //! Triangle set-up: RAS-1 to RAS-3, and the ratios of w of WGT-1. Lines and points are [strokes](super::stroke).
 
-use super::GUARD;
+use super::FAR_GUARD;
 use super::binary::Binary;
 use super::stroke::{Figure, Side, within};
 use super::weights::ratios;
@@ -38,6 +38,8 @@ pub struct Triangle {
     pub(crate) sides: [Side; 4],
     /// Whether its edges are smooth (SMO-1).
     pub(crate) is_smooth: bool,
+    /// Which vertices lie behind the eye. Their edge functions are not positive inside (RAS-8), where the triangle reaches to infinity.
+    pub(crate) behind: [bool; 3],
 }
 
 impl Triangle {
@@ -51,7 +53,9 @@ impl Triangle {
         if !triangle.place_corners(x, y) {
             return None;
         }
-        triangle.weigh(positions.map(|p| p[3]), perspective, profile);
+        let w = positions.map(|p| p[3]);
+        triangle.turn_behind(w);
+        triangle.weigh(w, perspective, profile);
         Some(triangle)
     }
 
@@ -59,14 +63,41 @@ impl Triangle {
     /// if the area is zero; the triangle is then unusable.
     #[inline(always)]
     pub(crate) fn place_corners(&mut self, x: [i64; 3], y: [i64; 3]) -> bool {
-        debug_assert!(x.iter().chain(&y).all(|n| n.abs() < GUARD));
+        debug_assert!(x.iter().chain(&y).all(|n| n.abs() < FAR_GUARD));
         let edges = EdgeFunctions::new(x, y);
         (self.a, self.b, self.c, self.owns) = (edges.a, edges.b, edges.c, edges.owns);
         self.doubled_area = edges.area.abs();
         (self.rows, self.columns) = (centres(y), centres(x));
         self.counter_clockwise = edges.area < 0;
-        (self.figure, self.is_smooth) = (Figure::Triangle, false);
+        (self.figure, self.is_smooth, self.behind) = (Figure::Triangle, false, [false; 3]);
         edges.area != 0
+    }
+
+    /// RAS-8: sets the fields that depend on which vertices lie behind the eye, by the w of the vertices.
+    pub(crate) fn turn_behind(&mut self, w: [f32; 3]) {
+        self.behind = w.map(|w| w < 0.0);
+        for k in (0..3).filter(|k| self.behind[*k]) {
+            self.owns[k] = self.a[k] < 0 || (self.a[k] == 0 && self.b[k] < 0);
+            self.counter_clockwise ^= true;
+            (self.rows, self.columns) = (EVERYWHERE, EVERYWHERE);
+        }
+    }
+
+    /// RAS-8: returns edge functions with the sign that they have inside.
+    #[inline(always)]
+    fn turned(&self, k: usize, edge: i64) -> i64 {
+        if self.behind[k] { -edge } else { edge }
+    }
+
+    /// Returns whether a sample with these edge functions lies outside, not on an edge.
+    #[inline]
+    pub(crate) fn is_outside(&self, e: [i64; 3]) -> bool {
+        (self.turned(0, e[0]) | self.turned(1, e[1]) | self.turned(2, e[2])) < 0
+    }
+
+    /// Returns whether a sample lies behind the eye, where the sum S of its edge numbers has not the sign of sums inside.
+    pub(crate) fn is_behind(&self, sum: i64) -> bool {
+        self.turned(1, sum) <= 0
     }
 
     /// Sets the fields that depend on the w of the vertices.
@@ -74,7 +105,7 @@ impl Triangle {
     pub fn weigh(&mut self, w: [f32; 3], perspective: bool, profile: Profile) {
         let taken = significant(w, profile);
         let flat = is_flat(w, perspective, profile);
-        self.ratios = (!flat).then(|| ratios(taken.map(Binary::new)));
+        self.ratios = (!flat).then(|| signed_ratios(taken));
     }
 
     /// Returns the three edge functions at the centre of pixel (i, j).
@@ -93,7 +124,7 @@ impl Triangle {
     /// RAS-3: returns whether the triangle covers a sample with these edge functions.
     #[inline]
     pub fn covers(&self, e: [i64; 3]) -> bool {
-        (0..3).all(|k| is_inside(e[k], self.owns[k]))
+        (0..3).all(|k| is_inside(self.turned(k, e[k]), self.owns[k]))
     }
 
     /// Returns whether it covers a pixel.
@@ -116,9 +147,22 @@ impl Triangle {
     #[inline]
     pub(super) fn limits(&self) -> [Side; 3] {
         // Not by a function on arrays, which is not always inlined.
-        let limit = |k: usize| [self.a[k], self.b[k], self.c[k] - i64::from(!self.owns[k])];
+        let limit = |k: usize| {
+            let [a, b, c] = [self.a[k], self.b[k], self.c[k]].map(|n| self.turned(k, n));
+            [a, b, c - i64::from(!self.owns[k])]
+        };
         [limit(0), limit(1), limit(2)]
     }
+}
+
+/// RAS-8: the rows and the columns of a triangle that reaches to infinity.
+pub(crate) const EVERYWHERE: (i64, i64) = (-FAR_GUARD / 16, FAR_GUARD / 16);
+
+/// RAS-8: returns the [ratios](ratios()) of w of any sign.
+#[inline(always)]
+pub(crate) fn signed_ratios(w: [f32; 3]) -> [Binary; 3] {
+    let of_magnitudes = ratios(w.map(|w| Binary::new(w.abs())));
+    [0, 1, 2].map(|k| if (w[k] < 0.0) == (w[1] < 0.0) { of_magnitudes[k] } else { of_magnitudes[k].negated() })
 }
 
 /// The edge functions of a triangle, as [`Triangle`] has them, and twice its signed area. Without branches, so that those of many triangles can be
@@ -186,6 +230,13 @@ pub(crate) fn clockwise_area<T: Integer>(x: [T; 3], y: [T; 3]) -> T {
 #[inline(always)]
 pub(crate) fn is_front(clockwise_area: i64, front_face: FrontFace) -> bool {
     (clockwise_area <= 0) == (front_face == FrontFace::CounterClockwise)
+}
+
+/// RAS-8: returns twice the area of a triangle as the eye sees it: each vertex behind the eye turns the triangle over.
+#[inline(always)]
+pub(crate) fn area_seen(clockwise_area: i64, w: [f32; 3]) -> i64 {
+    let is_turned = (w[0] < 0.0) ^ (w[1] < 0.0) ^ (w[2] < 0.0);
+    if is_turned { -clockwise_area } else { clockwise_area }
 }
 
 /// INT-6: returns the three w as a chip takes them.

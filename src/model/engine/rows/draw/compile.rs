@@ -134,7 +134,7 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> CompiledDraw
     }
     let kills = draw.kills();
     let samples = textures.iter().flatten().any(Option::is_some) || kills;
-    compiled.is_scalar = (is_scalar && samples) || draw.assembly.has_smooth_edges();
+    compiled.is_scalar = (is_scalar && samples) || draw.assembly.scalar_part().is_some();
     compiled.takes_quads = compiled.samplers.iter().any(Sampler::takes_quads);
     compiled.drops_late = kills || draw.alpha_test.is_some() || draw.stencil_test.is_some();
     let tests_late = compiled.drops_late && (draw.depth_test.is_some() || draw.stencil_test.is_some());
