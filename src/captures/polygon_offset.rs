@@ -52,7 +52,7 @@ fn shapes() -> [Shape; 7] {
     let floor = [[53.1875, -34.3125], [586.75, -34.3125], [1808.6875, 453.0], [-1168.6875, 453.0]];
     let roof = [[-1168.6875, 0.0], [1808.6875, 0.0], [586.75, 487.3125], [53.1875, 487.3125]];
     let wall = [[637.3125, -26.8125], [637.3125, 506.75], [150.0, 1728.6875], [150.0, -1248.6875]];
-    let (large, larger) = ([LARGE, LARGE / 32.0], [LARGE + 1.0, (LARGE + 1.0) / 32.0]);
+    let (large, larger) = ([LARGE; 2], [LARGE + 1.0; 2]);
     let screen = [[0.0, 0.0], [640.0, 0.0], [640.0, 480.0], [0.0, 480.0]];
     let strip = vec![
         [321.0, 0.5, 16_777_210.0, NEAR[1]],
@@ -71,8 +71,19 @@ fn shapes() -> [Shape; 7] {
     ]
 }
 
-/// Almost the deepest depth. The programs give it the same w, which is beyond the limit of a scene; a 32nd of that draws the same pixels.
+/// Almost the deepest depth.
 const LARGE: f32 = 16_777_046.0;
+
+/// Returns the floor of the world that the fixed function transforms. Its near corners lie half a million pixels from the screen.
+fn world(format: DepthFormat) -> Shape {
+    let deepest = if format.bits() == 16 { 65535.0 } else { 16_777_215.0 };
+    let eye = space::looking([0.0, 50.0, -7.0], [0.0, 47.0, 0.0]);
+    let matrix = space::product(eye, space::window_to(deepest));
+    let corners = [[-15000.0, 30000.0], [15000.0, 30000.0], [15000.0, -10.0], [-15000.0, -10.0]];
+    let place = |[x, z]: [f32; 2]| space::fixed_function_to([x, 0.0, z, 1.0], &matrix);
+    let coordinates = DOWN.map(|at| at.map(|n| 100.0 * n));
+    ("FloorQuad", Topology::Quads, corners.map(place).to_vec(), coordinates)
+}
 
 /// What a frame shows of a shape.
 #[derive(Clone)]
@@ -121,6 +132,7 @@ fn printed(shape: &Shape) -> Vec<[u16; 2]> {
             let down = rows.map(|y| [159, y]).into_iter().chain([[159, 448]]);
             top.chain(down).chain([[214, 448], [267, 448], [320, 448]]).collect()
         }
+        "Riddick" => vec![[316, 262], [270, 266], [184, 479], [150, 463]],
         "TriH" | "TriV" => positions.iter().step_by(3).map(pixel).collect(),
         "WallQuad" => (0..15).map(|n| [159 + 34 * n, 5]).collect(),
         _ => (0..15).map(|n| [159, 32 * n]).collect(),
@@ -154,10 +166,12 @@ fn marks([x, y]: [u32; 2]) -> Vec<Draw> {
 
 /// Adds the frames of W_buffering: colours, and the words of depth. A slope of w has no effect on colours, because every depth passes.
 pub(super) fn buffers(frames: &mut Frames) {
-    let named =
-        |prefix: &str, name: &str, [biased, sloped]: [u8; 2]| format!("{prefix}_{name}_V1_ZB{biased}_ZS{sloped}");
+    let named = |prefix: &str, name: &str, is_program: bool, [biased, sloped]: [u8; 2]| {
+        format!("{prefix}_{name}_V{}_ZB{biased}_ZS{sloped}", u8::from(is_program))
+    };
     for (format, prefix) in FORMATS {
-        for shape in shapes() {
+        let all = shapes().into_iter().map(|shape| (shape, true)).chain([(world(format), false)]);
+        for (shape, is_program) in all {
             let name = shape.0;
             for [biased, sloped] in [[0_u8, 0_u8], [0, 1], [1, 0], [1, 1]] {
                 for w_buffer in [false, true] {
@@ -165,9 +179,9 @@ pub(super) fn buffers(frames: &mut Frames) {
                     let factor = if w_buffer { 0.0 } else { FACTOR * f32::from(sloped) };
                     let offset = PolygonOffset { bias: BIAS * f32::from(biased), factor };
                     let setup = Setup { format, shape: shape.clone(), offset, w_buffer, clip: CLIP };
-                    let name_of_frame = named(&prefix, name, [biased, sloped]);
+                    let name_of_frame = named(&prefix, name, is_program, [biased, sloped]);
                     frames.push(name_of_frame.clone(), frame(&setup, Buffer::Color));
-                    if !w_buffer || (sloped == 0 && name != "LargeZ") {
+                    if !w_buffer || sloped == 0 {
                         frames.push(format!("{name_of_frame}_ZB"), frame(&setup, Buffer::Depth));
                     }
                 }
@@ -191,8 +205,17 @@ pub(super) fn buffers(frames: &mut Frames) {
         ];
         let setup = plain((name, Topology::Quads, positions, UP), false, CLIP);
         for (suffix, shown) in [("", Buffer::Color), ("_ZB", Buffer::Depth)] {
-            frames.push(format!("{}{suffix}", named("ZBuf24D", name, [0, 0])), frame(&setup, shown));
+            frames.push(format!("{}{suffix}", named("ZBuf24D", name, true, [0, 0])), frame(&setup, shown));
         }
+    }
+    let far = [
+        [-12_630.813, 21_456.188, 2_889_041.5, 2_026.681_5],
+        [270.4375, 266.5, 16_736_755.0, 668_074.8],
+        [317.25, 262.375, 16_739_467.0, 714_052.2],
+    ];
+    let setup = plain(("Riddick", Topology::Triangles, far.to_vec(), DOWN), true, CLIP);
+    for (suffix, shown) in [("", Buffer::Color), ("_ZB", Buffer::Depth)] {
+        frames.push(format!("{}{suffix}", named("WBuf24D", "Riddick", true, [0, 0])), frame(&setup, shown));
     }
     for shape in shapes() {
         let clips: [[u32; 2]; 3] = match shape.0 {
@@ -201,7 +224,7 @@ pub(super) fn buffers(frames: &mut Frames) {
             _ => continue,
         };
         for clip @ [x, y] in clips {
-            let name = named("WBuf24D", &format!("Clip{}-{x:03}-{y:03}", &shape.0[..1]), [0, 1]);
+            let name = named("WBuf24D", &format!("Clip{}-{x:03}-{y:03}", &shape.0[..1]), true, [0, 1]);
             frames.push(name, frame(&plain(shape.clone(), true, clip), Buffer::Color));
         }
     }

@@ -109,6 +109,23 @@ fn viewport(deepest: f64) -> Matrix {
     viewport
 }
 
+/// Returns the matrix from world to eye coordinates for an eye that looks at a point, upright, as the programs compute it.
+pub(super) fn looking(eye: [f32; 3], at: [f32; 3]) -> Matrix {
+    let cross = |a: [f32; 3], b: [f32; 3]| [1, 2, 0].map(|k| a[k] * b[(k + 1) % 3] - a[(k + 1) % 3] * b[k]);
+    let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let z = direction([0, 1, 2].map(|k| at[k] - eye[k]));
+    let x = direction(cross([0.0, 1.0, 0.0], z));
+    let y = direction(cross(z, x));
+    let mut matrix = IDENTITY;
+    for (column, axis) in [x, y, z].into_iter().enumerate() {
+        for row in 0..3 {
+            matrix[row][column] = axis[row].into();
+        }
+        matrix[3][column] = (-dot(axis, eye)).into();
+    }
+    matrix
+}
+
 /// Returns the matrix from world to eye coordinates.
 pub(super) fn eye() -> Matrix {
     moved_by([0.0, 0.0, DISTANCE as f32])
