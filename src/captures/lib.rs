@@ -18,6 +18,7 @@ mod counting;
 mod depth;
 mod depth_range;
 mod draws;
+mod extreme_w;
 mod faces;
 mod fog;
 mod fog_carryover;
@@ -259,6 +260,7 @@ const SUITES: &[Suite] = &[
     ("Viewport", rounding::viewports),
     ("Volume_texture", sampling::volumes),
     ("W_buffering", polygon_offset::buffers),
+    ("W_param", extreme_w::frames),
     ("Window_clip", clip::window_clip),
     ("ZMinMaxControl", depth_range::controls),
     ("ZPass_pixel_count", counting::frames),

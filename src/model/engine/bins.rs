@@ -138,7 +138,17 @@ mod tests {
         let triangles = Triangles::split(&indices, Topology::Triangles, ProvokingVertex::First);
         let (vertices, clipping, lines) = (Vertices::default(), Clipping::default(), Lines::default());
         let smooth_polygons = false;
-        Assembly { vertices, corners, triangles, clipping, smooth_polygons, lines, point_size: 8, point_sizes: None, is_far: false }
+        Assembly {
+            vertices,
+            corners,
+            triangles,
+            clipping,
+            smooth_polygons,
+            lines,
+            point_size: 8,
+            point_sizes: None,
+            is_far: false,
+        }
     }
 
     /// No band costs more than its part, one row and what makes a border even.
