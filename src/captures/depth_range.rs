@@ -129,9 +129,7 @@ fn block([left, top]: [f32; 2], block: Block, place: impl Fn([f32; 4]) -> [f32; 
             };
             for (side, dx, dy) in [(0, 0.0, 0.0), (1, 16.0, 0.0), (1, 16.0, 16.0), (0, 0.0, 16.0)] {
                 let [r, g, b] = colors[side];
-                let [x, y, z, w] = place([x + dx, y + dy, zs[side], ws[side]]);
-                // The chip replaces a w of 0 by a small number.
-                let position = [x, y, z, w.max(f32::EPSILON * 8.0)];
+                let position = place([x + dx, y + dy, zs[side], ws[side]]);
                 let diffuse = VertexColor::Floats([r, g, b, 1.0]);
                 vertices.push(Vertex { position, diffuse, ..Vertex::default() });
             }

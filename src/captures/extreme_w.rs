@@ -44,11 +44,6 @@ fn shape(is_quad: bool, vertices: &[Vertex; 4]) -> Draw {
     }
 }
 
-/// Limits w as the chip's reciprocal does.
-fn limited([x, y, z, w]: [f32; 4]) -> [f32; 4] {
-    [x, y, z, w.abs().clamp(LEAST, MOST).copysign(w)]
-}
-
 /// Adds the colours of a draw to those of the frame buffer.
 fn added(draw: Draw) -> Draw {
     let blend = Blend { equation: BlendEquation::Add, source: BlendFactor::One, destination: BlendFactor::One };
@@ -78,7 +73,7 @@ pub(super) fn frames(frames: &mut Frames) {
                     let vertex = |n: usize| {
                         let [x, y] = corners([-80.0, -80.0, 80.0, 80.0])[n].map(|at| at * scale[n]);
                         let seen = unit::transform(&space::rows(&space::IDENTITY), unit::words([x, y, 0.0, w[n]]));
-                        placed(limited(unit::window(seen, [320.0, 240.0, 0.0])), corners(TEXELS)[n])
+                        placed(unit::window(seen, [320.0, 240.0, 0.0]), corners(TEXELS)[n])
                     };
                     checkered(canvas, [0xff00_ffff, 0xffff_0000], added(shape(is_quad, &[0, 1, 2, 3].map(vertex))));
                 });
@@ -88,7 +83,7 @@ pub(super) fn frames(frames: &mut Frames) {
                     // What lies behind the eye is given on the other side.
                     let corner = if w.is_sign_negative() { 2 - n } else { n };
                     let [x, y] = corners([160.0, 70.0, 480.0, 390.0])[corner];
-                    placed(limited([x, y, 0.0, w]), corners(TEXELS)[n])
+                    placed([x, y, 0.0, w], corners(TEXELS)[n])
                 };
                 let drawn = match is_quad {
                     true => shape(true, &[place(0, first), place(1, 1.0), place(2, last), place(3, 1.0)]),
@@ -110,7 +105,7 @@ pub(super) fn frames(frames: &mut Frames) {
     for (suffix, perspective) in [("", false), ("_tex_persp", true)] {
         frames.paint(format!("w_pos_strip{suffix}"), 0xff00_0000, move |canvas| {
             let corner = |at: [f32; 2], w: f32, [r, g, b]: [f32; 3]| Vertex {
-                position: limited([at[0], at[1], 0.0, w]),
+                position: [at[0], at[1], 0.0, w],
                 diffuse: VertexColor::Floats([r, g, b, 1.0]),
                 ..Vertex::default()
             };

@@ -2,9 +2,10 @@
 
 use super::*;
 
-/// The numbers that take the place of an infinite w and of 0, which a scene may not have.
-const LARGEST_W: f32 = 1_048_576.0;
-const SMALLEST_W: f32 = 1.0 / 1_048_576.0;
+/// The w of the limits: infinity, a number, and 0.
+fn limits(infinity: f32) -> [f32; 6] {
+    [infinity, 0.980_578, 1.0 / infinity, infinity, infinity, infinity]
+}
 
 const RED: [f32; 4] = [1.0, 0.0, 0.0, 1.0];
 const GREEN: [f32; 4] = [0.0, 1.0, 0.0, 1.0];
@@ -33,10 +34,12 @@ fn triangles(w: [f32; 6]) -> Vec<Vertex> {
 
 /// Adds the frames of Front_face. Values that the chip does not know leave the winding before them.
 pub(super) fn frames(frames: &mut Frames) {
-    let limits = [LARGEST_W, 0.980_578, SMALLEST_W, LARGEST_W, LARGEST_W, LARGEST_W];
-    for (mode, w, polygon_modes) in
-        [("", [1.0; 6], PolygonModes::FILL), ("FM_", limits, PolygonModes::FILL), ("LM_", limits, WIREFRAME)]
-    {
+    for (mode, w, polygon_modes) in [
+        ("", [1.0; 6], PolygonModes::FILL),
+        ("FM_", limits(f32::INFINITY), PolygonModes::FILL),
+        // The model's limit for lines.
+        ("LM_", limits(1_048_576.0), WIREFRAME),
+    ] {
         for (winding, front_face) in [
             ("CW", FrontFace::Clockwise),
             ("CCW", FrontFace::CounterClockwise),

@@ -236,8 +236,8 @@ impl Plan {
                         format!("window position x = {x}, y = {y}, w = {w} lies outside the rasteriser's domain");
                     let help = match draw.positions {
                         Positions::Window => {
-                            "keep |x| and |y| below 4096 pixels and w between 2^-20 and 2^20, of filled triangles below 2^20 pixels and |w| \
-                             between 2^-64 and 2^64, with w below 0 in perspective only"
+                            "keep |x| and |y| below 4096 pixels and w between 2^-20 and 2^20; filled triangles may have any w, below 0 in \
+                             perspective, and reach 2^20 pixels"
                         }
                         Positions::Clip(_) => {
                             "keep w at most 2^20; what lies behind the viewer or far outside the view is cut off, \

@@ -225,7 +225,7 @@ pub fn assemble(draw: &Draw) -> Result<Assembly, Vec<PositionError>> {
 /// clipping; `blamed` holds, for each of these, the vertex of the draw that is reported in its place.
 fn finish(
     draw: &Draw,
-    vertices: Vertices,
+    mut vertices: Vertices,
     triangles: Triangles,
     clipping: Clipping,
     blamed: &[usize],
@@ -255,6 +255,9 @@ fn finish(
     }
     if !errors.is_empty() {
         return Err(errors);
+    }
+    if is_far {
+        vertices.map_positions(limit_w);
     }
     let corners = used.iter().enumerate().map(|(v, used)| corner(&vertices, v, *used)).collect();
     let Draw { smooth_polygons, lines, point_size, .. } = *draw;
@@ -295,8 +298,12 @@ fn may_be_far(draw: &Draw, triangles: &Triangles) -> bool {
 /// Returns whether a window position is within RAS-0 for filled triangles. Those behind the eye need perspective (RAS-8).
 fn in_far_range([x, y, z, w]: [f32; 4], perspective: bool) -> bool {
     let in_guard = |n: f32| n.abs() * 16.0 < FAR_GUARD as f32;
-    let w_in_range = (1.0 / FARTHEST_W..=FARTHEST_W).contains(&w.abs()) && (perspective || w > 0.0);
-    z.is_finite() && in_guard(x) && in_guard(y) && w_in_range
+    z.is_finite() && in_guard(x) && in_guard(y) && !w.is_nan() && (perspective || w.is_sign_positive())
+}
+
+/// RAS-8: limits the magnitude of w.
+fn limit_w([x, y, z, w]: [f32; 4]) -> [f32; 4] {
+    [x, y, z, w.abs().clamp(1.0 / FARTHEST_W, FARTHEST_W).copysign(w)]
 }
 
 /// Number of new vertices that are converted to columns at a time.
