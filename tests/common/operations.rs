@@ -15,6 +15,7 @@ pub const OPERATIONS: &[(&str, &str, u32, &[&str])] = &[
     ("primitive-split", "a count of vertices and a triangle's number", 12, &["primitive-split"]),
     ("clipped-triangle", "a vertex of three positions of four floats", 377, &[]),
     ("coverage", "six positions, a pixel", 99, &[]),
+    ("eye-coverage", "six positions, a pixel, which corners lie behind the eye", 102, &[]),
     ("line-coverage", "two ends, a width, a pixel", 81, &[]),
     ("point-coverage", "a position, a size, a pixel", 55, &[]),
     ("point-size", "a distance and six parameters", 212, &[]),

@@ -55,13 +55,17 @@ pub fn scene() -> BoxedStrategy<Scene> {
     Tape(PLAIN).prop_map(|tape| build(&tape)).prop_filter("RAS-0", fits).boxed()
 }
 
-/// Returns scenes like [`scene`]s, without smooth edges: they are not printed.
+/// Returns scenes like [`scene`]s, without smooth edges and vertices behind the eye or far away: they are not printed.
 pub fn sharp() -> BoxedStrategy<Scene> {
     let sharp = |mut scene: Scene| {
         for draw in &mut scene.draws {
             draw.smooth_polygons = false;
             if draw.lines.rasterization == LineRasterization::RectangularSmooth {
                 draw.lines.rasterization = LineRasterization::Rectangular;
+            }
+            if matches!(draw.positions, Positions::Window) {
+                let near = |n: f32| n.clamp(-4095.0, 4095.0);
+                draw.vertices.map_positions(|[x, y, z, w]| [near(x), near(y), z, w.abs()]);
             }
         }
         scene

@@ -10,6 +10,25 @@ fn can_be_sprite(textures: &[Texture], draw: &Draw) -> bool {
     is_flat && matches!(draw.texture_shader[SPRITE_UNIT].operation, ShaderOperation::None | ShaderOperation::Sample)
 }
 
+/// Sends some vertices of filled triangles in window coordinates far away, and some behind the eye (RAS-8).
+fn send_away(draw: &mut Draw) {
+    let are_filled = draw.topology.has_faces() && draw.polygon_modes == PolygonModes::FILL && !draw.smooth_polygons;
+    if !are_filled || !matches!(draw.positions, Positions::Window) {
+        return;
+    }
+    let [far, behind] = [draw.blend_constant[0], draw.blend_constant[3]].map(|n| n as usize % 5 + 2);
+    let perspective = draw.perspective;
+    draw.vertices.update(|n, vertex| {
+        let [x, y, _, w] = &mut vertex.position;
+        if n % far == 1 {
+            (*x, *y) = (*x * 900.0 + 17.0, *y * -77.0);
+        }
+        if n % behind == 0 && perspective {
+            *w = -*w;
+        }
+    });
+}
+
 /// Makes lines or points of some draws, gives sides of faces other modes, and fills triangles by a pattern.
 pub fn stroke(c: &mut Choices<'_>, (profile, textures): (Profile, &[Texture]), draw: &mut Draw) {
     let size = |c: &mut Choices<'_>| match c.below(4) {
@@ -30,6 +49,9 @@ pub fn stroke(c: &mut Choices<'_>, (profile, textures): (Profile, &[Texture]), d
     // No word of the tape, so that the other choices stay the same.
     draw.convert_yuv = profile == Profile::Nv2a && draw.blend_constant[3] % 5 == 1;
     draw.smooth_polygons = draw.blend_constant[2] % 6 == 1;
+    if draw.blend_constant[1] % 5 == 1 {
+        send_away(draw);
+    }
     draw.point_sprite = c.once_in(2) && profile == Profile::Nv2a && can_be_sprite(textures, draw);
     (draw.lines, draw.point_size) = (Lines { width: size(c), rasterization: c.any() }, size(c));
     if c.once_in(3) {

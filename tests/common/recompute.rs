@@ -627,7 +627,7 @@ fn first_24(n: f64) -> f64 {
 /// truncation.
 #[allow(clippy::float_arithmetic, reason = "an independent way to the same numbers")]
 fn depth_sum(edges: [f64; 3], e: [f64; 3]) -> f64 {
-    let most = e.into_iter().filter(|e| *e > 0.0).map(power).max().unwrap();
+    let most = e.into_iter().filter(|e| *e != 0.0).map(|e| power(e.abs())).max().unwrap();
     edges.into_iter().map(|e| cut(e, two(most - 28))).sum()
 }
 
@@ -654,7 +654,8 @@ fn depth(inputs: &[(String, Number)], largest: i128) -> Option<f64> {
     let mut e = three(&|k| format!("E{k}"));
     let mut edges = e.map(first_24);
     if of_w {
-        edges = [0, 1, 2].map(|k| first_24(edges[k] * first_24(z[1] / z[k])));
+        // RAS-8: the sign of w of the second vertex is that of all of them inside, and leaves the weights as they are.
+        edges = [0, 1, 2].map(|k| first_24(edges[k] * first_24(z[1] / z[k])) * z[1].signum());
         e = edges;
     }
     let most = e.into_iter().filter(|e| *e > 0.0).map(power).max().unwrap();

@@ -314,7 +314,9 @@ impl Setup {
             if cross == 0 {
                 return None;
             }
-            let clockwise = cross > 0;
+            // RAS-8: an odd number of vertices behind the eye shows the other side.
+            let behind = vertices.iter().filter(|v| v.position[3] < 0.0).count();
+            let clockwise = (cross > 0) == (behind % 2 == 0);
             let front = clockwise == (draw.front_face == FrontFace::Clockwise);
             match draw.cull {
                 Cull::Front if front => return None,
@@ -374,9 +376,11 @@ impl Setup {
             e[k] = (t[0] - s[0]) * (y - s[1]) - (t[1] - s[1]) * (x - s[0]);
             // An edge that goes up has the inside to its right, so it is a left edge. One that goes right has it below, so it is a top
             // edge.
-            let left = t[1] < s[1];
-            let top = t[1] == s[1] && t[0] > s[0];
-            covered &= e[k] > 0 || (e[k] == 0 && (left || top));
+            // RAS-8: for a vertex behind the eye the inside lies on the other side.
+            let side = if self.vertices[k].position[3] < 0.0 { -1 } else { 1 };
+            let left = t[1] * side < s[1] * side;
+            let top = t[1] == s[1] && t[0] * side > s[0] * side;
+            covered &= e[k] * side > 0 || (e[k] == 0 && (left || top));
         }
         (e, covered)
     }
@@ -384,7 +388,10 @@ impl Setup {
     /// WGT-1: returns the sample point of a pixel, or `None` where the edge numbers add to 0 or less, which happens outside only.
     pub fn sample(&self, i: i128, j: i128) -> Option<Sample> {
         let (edges, _) = self.edges(i, j);
-        Some(Sample { edges, b: weights::weights(edges, self.w)? })
+        // RAS-8: edge numbers are relative to the second vertex.
+        let turned = self.vertices[1].position[3] < 0.0 && self.is_filled();
+        let (b, is_negative) = weights::signed_weights(edges, self.w);
+        (is_negative == turned).then_some(Sample { edges, b })
     }
 
     /// SMO-2: returns the sample point of a pixel that is drawn, at its centre even if that is not covered.

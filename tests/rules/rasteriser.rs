@@ -22,13 +22,16 @@ fn split(topology: Topology, vertices: usize) -> Vec<[u32; 3]> {
 #[test]
 fn examples_of_the_rasteriser() {
     let ras0 = beside_rows("RAS-0");
-    let refused_by = |x: f32| {
-        let mut draw = covering(Vertex::default());
+    let refused_by = |x: f32, topology: Topology| {
+        let mut draw = Draw { topology, ..covering(Vertex::default()) };
         draw.vertices.update(|index, vertex| vertex.position[0] = if index == 1 { x } else { vertex.position[0] });
         let scene = scene(Profile::Nv2a, SurfaceFormat::A8R8G8B8, [0; 4], vec![draw]);
         Plan::compile(&scene, &PlanOptions::default()).err().map(|errors| errors[0].rule.unwrap())
     };
-    ras0.gives("x = 4095.99", refused_by(4095.99), None).gives("x = 4096", refused_by(4096.0), Some("RAS-0"));
+    ras0.gives("x = 4095.99", refused_by(4095.99, Topology::LineStrip), None)
+        .gives("x = 4096", refused_by(4096.0, Topology::LineStrip), Some("RAS-0"))
+        .gives("4096 of a triangle", refused_by(4096.0, Topology::Triangles), None)
+        .gives("x = 1048576", refused_by(1_048_576.0, Topology::Triangles), Some("RAS-0"));
 
     beside_rows("RAS-1").shows("16 x", 16.0 * -162.311_39, 2, "-2596.98");
 

@@ -60,10 +60,13 @@ pub(crate) fn edges<O: Observer>(
     observer: &mut O,
 ) {
     for (k, edge) in triangle.edge_functions().into_iter().enumerate() {
+        let is_behind = triangle.behind[k];
+        let rule = if is_behind { "RAS-8" } else { rule };
         let step = edge_step(block, rule, (prefix, &format!("E{k}")), edge, pixel);
         let owns = if triangle.owns[k] { "left or top edge" } else { "right or bottom edge" };
-        let on_edge = (rule == "RAS-3" && step.value == 0).then(|| format!("exactly on a {owns}"));
-        observer.step(step.note(on_edge));
+        let on_edge = (matches!(rule, "RAS-3" | "RAS-8") && step.value == 0).then(|| format!("exactly on a {owns}"));
+        let turned = is_behind.then(|| format!("negative inside: vertex {k} lies behind the eye"));
+        observer.step(step.note(on_edge.or(turned)));
     }
 }
 

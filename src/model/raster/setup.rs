@@ -262,6 +262,33 @@ mod tests {
     }
 
     #[test]
+    fn triangles_behind_the_eye() {
+        let corners = [[4.5, 4.5], [8.5, 4.5], [4.5, 8.5]];
+        let covers = |corners: [[f32; 2]; 3], behind: [bool; 3], (i, j): (i64, i64)| {
+            let w = behind.map(|behind| if behind { -2.0 } else { 1.0 });
+            let position = |k: usize| [corners[k][0], corners[k][1], 0.0, w[k]];
+            let triangle = Triangle::new([0, 1, 2].map(position), true, Profile::Nv2a).expect("area");
+            let covered = triangle.covers(triangle.edges(i, j));
+            assert_eq!(triangle.contains(i, j), covered, "{behind:?} {i} {j}");
+            covered
+        };
+        let sets = [0, 1, 2, 3, 4, 5, 6, 7].map(|n| [n & 1 != 0, n & 2 != 0, n & 4 != 0]);
+        let turned = [corners[0], corners[2], corners[1]];
+        for (i, j) in (-4..20).flat_map(|i| (-4..20).map(move |j| (i, j))) {
+            let counts = sets.map(|set| usize::from(covers(corners, set, (i, j))));
+            // Each pixel belongs to one set of signs, or its edges have owners that contradict each other; nobody sees a triangle that lies behind
+            // the eye as a whole.
+            assert!(counts.iter().sum::<usize>() <= 1 && counts[7] == 0, "{i} {j}: {counts:?}");
+            // The order of the corners does not matter.
+            for [a, b, c] in sets {
+                assert_eq!(covers(corners, [a, b, c], (i, j)), covers(turned, [a, c, b], (i, j)));
+            }
+        }
+        assert!(covers(corners, [true, false, false], (9, 9)) && !covers(corners, [false; 3], (9, 9)));
+        assert!(covers(corners, [true, false, false], (6, 6)) && !covers(corners, [false; 3], (6, 6)));
+    }
+
+    #[test]
     fn spans_are_the_covered_columns() {
         let shapes = [
             [[1.3, 1.1], [18.7, 3.9], [5.2, 17.4]],

@@ -137,6 +137,7 @@ pub fn all() -> Vec<&'static dyn Unit> {
         &geometry::PrimitiveSplit,
         &geometry::ClippedTriangle,
         &raster::Coverage,
+        &raster::EyeCoverage,
         &stroke::LineCoverage,
         &stroke::PointCoverage,
         &stroke::PointSize,

@@ -115,6 +115,45 @@ impl Unit for Coverage {
     }
 }
 
+/// Coverage of a pixel by a triangle with vertices behind the eye.
+pub(super) struct EyeCoverage;
+
+impl Unit for EyeCoverage {
+    known_as!(
+        "eye-coverage", &["RAS-8"],
+        "whether a triangle covers a pixel where some of its vertices lie behind the eye: bit k of `in.behind` is vertex k", Geometry;
+        takes [geometry(), [Column::unsigned("in.behind", 3, 7)]];
+        gives [Column::results(EDGES, Kind::Signed(36)), Column::result("out.covered", Kind::Unsigned(1))]
+    );
+
+    fn regressions(&self) -> Vec<Vec<i64>> {
+        // Both windings, each set of vertices, a pixel on each side of an edge and of the vertex opposite, and one on an edge.
+        let pixels = [[6, 6], [9, 9], [2, 9], [9, 2], [2, 2], [4, 6], [8, 4], [4, 2], [2, 4]];
+        let row = |[i, j]: [i64; 2], behind: i64| {
+            [vec![72, 72, 136, 72, 72, 136, i, j, behind], vec![72, 72, 72, 136, 136, 72, i, j, behind]]
+        };
+        (0..8).flat_map(|behind| pixels.into_iter().flat_map(move |pixel| row(pixel, behind))).collect()
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        let pixel = [inputs[6], inputs[7]];
+        fit(inputs);
+        // Most of these triangles reach out of their boxes.
+        if inputs[8] != 0 {
+            inputs[6..8].copy_from_slice(&pixel);
+        }
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let w = [0, 1, 2].map(|k| if inputs[8] >> k & 1 == 1 { -1.0_f32 } else { 1.0 });
+        let w = w.map(|w| i64::from(w.to_bits()));
+        let Some(triangle) = triangle(inputs, Some(&w), conditions.profile) else { return results.fill(0) };
+        let edges = triangle.edges(inputs[6], inputs[7]);
+        results[..3].copy_from_slice(&edges);
+        results[3] = triangle.covers(edges).into();
+    }
+}
+
 /// The weights of the vertices.
 pub(super) struct VertexWeights;
 
