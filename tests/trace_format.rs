@@ -216,7 +216,7 @@ fn the_page_shows_the_vocabulary() {
 fn random_traces(page: &Page) -> Seen {
     let mut seen = Seen::default();
     let mut runner = TestRunner::deterministic();
-    let mut sequence = Random::seeded(1);
+    let mut sequence = Random::seeded(3);
     let mut random = move |below: u32| sequence.below(below.into()) as u32;
     for number in 0..SCENES {
         let scene = match number % 4 {

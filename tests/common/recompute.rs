@@ -721,7 +721,7 @@ fn float_word(z: f64, kept: i32, bias: i32, largest: i128) -> i128 {
 /// pixels; if it is empty, there is one tap.
 fn tap([limit, number]: [i128; 2], quad: &[(String, Number)]) -> ([i128; 2], i128) {
     let c = |k: usize| quad.get(k).map_or(0, |input| input.1.value);
-    let limited = |n: i128| n.clamp(-1 << 40, 1 << 40);
+    let limited = |n: i128| n.clamp(-1 << 29, 1 << 29);
     let axes = [2, 4].map(|k| [limited(c(k) - c(0)), limited(c(k + 1) - c(1))]);
     let length = |[u, v]: [i128; 2]| ((u * u + v * v) as u128).isqrt() as i128;
     let lengths = axes.map(length);
