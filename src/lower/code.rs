@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use ninebit::state::CompareFunction;
 
 use crate::input::Input;
-pub(crate) use crate::kind::{ANY_BINARY, EXPONENT, MANTISSA, enclosing};
+pub(crate) use crate::kind::{ANY_BINARY, COORDINATE, EXPONENT, MANTISSA, NORMAL, enclosing};
 pub use crate::kind::{Kind, Range, packed};
 pub use crate::operation::{Operand, Operation, Test};
 pub(crate) use crate::operation::{Table, collected};

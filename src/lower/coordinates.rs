@@ -12,7 +12,7 @@ use ninebit::texture::planned::PlannedUnit;
 use ninebit::texture::{lod, shader};
 
 use crate::binary::{Interpolant, call, counted};
-use crate::code::{Code, Operand, Operation};
+use crate::code::{COORDINATE, Code, Operand, Operation};
 use crate::helper::Helper;
 use crate::input::Input;
 use crate::number::Number;
@@ -38,7 +38,7 @@ impl<'a> Facing<'a> {
 }
 
 /// A direction on a face: sc, tc, |ma|.
-type OnFace<'a> = [Interpolant<'a>; 3];
+pub(crate) type OnFace<'a> = [Interpolant<'a>; 3];
 
 impl<'a> Unit<'a, '_, '_> {
     pub(crate) fn component(&self, sample: &Sample<'a>, n: usize) -> Interpolant<'a> {
@@ -58,18 +58,18 @@ impl<'a> Unit<'a, '_, '_> {
     pub(crate) fn facing(&self, direction: [Interpolant<'a>; 3]) -> Facing<'a> {
         let code = self.interpolator.code;
         code.by("TEX-12");
-        let [x, y, z] = direction.map(|n| n.parts(code, (-(1 << 26), 1 << 26)));
+        let [x, y, z] = direction.map(|n| n.parts(code, COORDINATE));
         let [is_x, is_y] = major_axis([x.is_no_smaller(y), x.is_no_smaller(z), y.is_no_smaller(z)]);
         let major = x.mantissa.or(is_x, y.mantissa.or(is_y, z.mantissa));
         Facing { is_x, is_y, negative: major.is_negative() }
     }
 
-    /// TEX-12, TEX-20: returns sc, tc and |ma| of a direction on a face, tc negated for an image of two dimensions.
-    fn on_face(&self, direction: [Interpolant<'a>; 3], facing: Facing<'a>) -> OnFace<'a> {
+    /// TEX-12: returns sc, tc and |ma| of a direction on a face.
+    pub(crate) fn on_face(&self, direction: [Interpolant<'a>; 3], facing: Facing<'a>) -> OnFace<'a> {
         let Facing { is_x, is_y, negative } = facing;
         let code = self.interpolator.code;
         code.by("TEX-12");
-        let parts = direction.map(|n| n.parts(code, (-(1 << 26), 1 << 26)));
+        let parts = direction.map(|n| n.parts(code, COORDINATE));
         [0, 1, 2].map(|n: usize| {
             // Both faces of an axis take the same axes.
             let of = |axis: usize| {
@@ -84,12 +84,30 @@ impl<'a> Unit<'a, '_, '_> {
             let ((x, of_x), (y, of_y), (z, of_z)) = (of(0), of(1), of(2));
             let number = x.or(is_x, y.or(is_y, z));
             let sign = of_x.or(is_x, of_y.or(is_y, of_z));
-            let is_negated = !sign.is_zero() ^ Truth::Known(n == 1 && self.unit.kind != TextureKind::Cube);
-            let number = number.negated().or(is_negated, number);
-            Interpolant::from_line(
-                code,
-                code.make(Operation::Binary(number.mantissa.operand(), number.exponent.operand())),
-            )
+            number_of(code, number.negated().or(!sign.is_zero(), number))
+        })
+    }
+
+    /// Returns sc, tc and |ma| where a unit samples in a direction.
+    fn face_of(&self, facing: Option<Facing<'a>>) -> Option<OnFace<'a>> {
+        match (self.place, facing) {
+            (Place::OnFace(face), _) => Some(face),
+            (_, Some(facing)) => Some(self.on_face(self.direction(self.place, self.sample)?, facing)),
+            _ => None,
+        }
+    }
+
+    /// TEX-12, TEX-20: returns u and v of sc, tc and |ma| in 2^-`power` texel.
+    fn of_face(&self, [s, t, m]: OnFace<'a>, sides: [Number<'a>; 2], power: i64) -> [Number<'a>; 2] {
+        let (code, is_plane) = (self.interpolator.code, self.unit.kind != TextureKind::Cube);
+        let helper = if power == 8 { Helper::Face } else { Helper::FarFace };
+        let (at, m) = ([s, self.turned(t, is_plane)], m.operand(code));
+        [0, 1].map(|n: usize| {
+            let side = sides[n];
+            let size = if is_plane { side + side } else { side };
+            let at = counted(code, helper, &[divided(code, at[n], m), m, size.operand()]);
+            code.by("TEX-20");
+            if is_plane { on_plane(at, side, power) } else { at }
         })
     }
 
@@ -116,21 +134,13 @@ impl<'a> Unit<'a, '_, '_> {
             })
         };
         let (place, sample) = (self.place, self.sample);
-        if let (Some(facing), Some(direction)) = (facing, self.direction(place, sample)) {
-            let [s, t, m] = self.on_face(direction, facing);
-            let m = m.operand(code);
-            let [s, t] = [s, t].map(|n| divided(code, n, m));
-            let of = |q: Operand, size: Number<'a>| counted(code, Helper::Face, &[q, m, size.operand()]);
+        if let Some(face) = self.face_of(facing) {
+            let uv = self.of_face(face, sides, 8);
             if self.unit.kind == TextureKind::Cube {
-                return named([of(s, sides[0]), of(t, sides[1])]);
+                return named(uv);
             }
-            let of_faces = [0, 1].map(|axis: usize| of([s, t][axis], sides[axis] + sides[axis]));
-            let is_zero = self.is_zero(direction);
-            code.by("TEX-20");
-            return named([0, 1].map(|axis: usize| {
-                let at = on_plane(of_faces[axis], sides[axis], 8);
-                Number::Constant(ZERO_VECTOR[axis]).or(is_zero, at)
-            }));
+            let is_zero = !is_positive(code, face[2]);
+            return named([0, 1].map(|n: usize| Number::Constant(ZERO_VECTOR[n]).or(is_zero, uv[n])));
         }
         let is_on_face = self.unit.is_on_face();
         let at = |n: usize| self.turned(self.component(sample, n), is_on_face && n == 1);
@@ -143,7 +153,7 @@ impl<'a> Unit<'a, '_, '_> {
             }
             Place::Floats(floats) => counted(code, Helper::Float, &[floats[n].operand(), sides[n].operand()]),
             Place::Ends(dots) => self.end(n, dots[n], sides[n], 8),
-            Place::Own(_) | Place::Vector(_) => self.floored(at(n), sides[n]),
+            Place::Own(_) | Place::Vector(_) | Place::OnFace(_) => self.floored(at(n), sides[n]),
         };
         if is_on_face {
             let uv = [0, 1].map(own);
@@ -161,14 +171,7 @@ impl<'a> Unit<'a, '_, '_> {
             return number;
         }
         let code = self.interpolator.code;
-        let Binary { mantissa, exponent } = number.parts(code, (-(1 << 26), 1 << 26)).negated();
-        Interpolant::from_line(code, code.make(Operation::Binary(mantissa.operand(), exponent.operand())))
-    }
-
-    /// Returns whether a direction is the zero vector.
-    fn is_zero(&self, direction: [Interpolant<'a>; 3]) -> Truth<'a> {
-        let is_zero = direction.map(|n| n.parts(self.interpolator.code, (-(1 << 26), 1 << 26)).mantissa.is_zero());
-        is_zero[0] & is_zero[1] & is_zero[2]
+        number_of(code, number.parts(code, COORDINATE).negated())
     }
 
     /// TEX-20: returns the end of a face that a dot product, a pattern of binary32, chooses along an axis, in 2^-`power` texel.
@@ -243,30 +246,15 @@ impl<'a> Unit<'a, '_, '_> {
     ) -> ([Number<'a>; 2], Truth<'a>) {
         let (code, sample, place) = (self.interpolator.code, self.sample, self.place);
         let (lengths, sides) = (sides, sides.map(Number::operand));
-        let is_positive = |n: Interpolant<'a>| Number::ZERO.is_below(n.parts(code, crate::code::MANTISSA).mantissa);
         code.by("TEX-11");
-        let mut behind = !is_positive(sample.sum);
-        if let (Some(facing), Some(direction)) = (facing, self.direction(place, sample)) {
-            let [s, t, m] = self.on_face(direction, facing);
-            behind = behind | !is_positive(m);
-            let m = m.operand(code);
-            let at = [s, t].map(|n| divided(code, n, m));
-            let of = |n: usize, side: Operand| counted(code, Helper::FarFace, &[at[n], m, side]);
-            if self.unit.kind == TextureKind::Cube {
-                return ([0, 1].map(|n: usize| of(n, sides[n])), behind);
-            }
-            return (
-                [0, 1].map(|n: usize| {
-                    let of_face = of(n, (lengths[n] + lengths[n]).operand());
-                    code.by("TEX-20");
-                    on_plane(of_face, lengths[n], 16)
-                }),
-                behind,
-            );
+        let mut behind = !is_positive(code, sample.sum);
+        if let Some(face) = self.face_of(facing) {
+            behind = behind | !is_positive(code, face[2]);
+            return (self.of_face(face, lengths, 16), behind);
         }
         let q = (matches!(place, Place::Own(Projection::Ratio))).then(|| self.component(sample, 3));
         if let Some(q) = q {
-            behind = behind | (!is_positive(q) & !self.is_point);
+            behind = behind | (!is_positive(code, q) & !self.is_point);
         }
         let is_on_face = self.unit.is_on_face();
         let at = |n: usize| self.turned(self.component(sample, n), is_on_face && n == 1);
@@ -279,7 +267,9 @@ impl<'a> Unit<'a, '_, '_> {
             }
             (Place::Floats(floats), _) => counted(code, Helper::FarFloat, &[floats[n].operand(), sides[n]]),
             (Place::Ends(dots), _) => self.end(n, dots[n], lengths[n], 16),
-            (Place::Own(_) | Place::Vector(_), _) => far_floored(code, at(n).operand(code), sides[n]),
+            (Place::Own(_) | Place::Vector(_) | Place::OnFace(_), _) => {
+                far_floored(code, at(n).operand(code), sides[n])
+            }
         };
         if is_on_face {
             let uv = [0, 1].map(own);
@@ -288,6 +278,16 @@ impl<'a> Unit<'a, '_, '_> {
         }
         ([0, 1].map(|n: usize| self.of_figure((n, pixel[n]), (sides[n], 16), || own(n))), behind)
     }
+}
+
+/// Returns a number of these parts.
+fn number_of<'a>(code: &'a Code, Binary { mantissa, exponent }: Binary<Number<'a>>) -> Interpolant<'a> {
+    Interpolant::from_line(code, code.make(Operation::Binary(mantissa.operand(), exponent.operand())))
+}
+
+/// Returns whether a number is positive.
+fn is_positive<'a>(code: &'a Code, number: Interpolant<'a>) -> Truth<'a> {
+    Number::ZERO.is_below(number.parts(code, crate::code::MANTISSA).mantissa)
 }
 
 /// TEX-15: returns the quotient of a number by another.

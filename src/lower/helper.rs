@@ -1,6 +1,6 @@
 //! Helpers: functions that a printed text calls. Each is a piece of the rules, which the model computes and the printer reads.
 
-use ninebit::number::{Integer, newton_root};
+use ninebit::number::{Integer, newton_root, round_bits, shift, split_bits};
 use ninebit::raster::binary::Binary;
 use ninebit::raster::depth;
 use ninebit::raster::interpolate::{FARTHEST, across_face, divided, ratio_coordinate};
@@ -9,7 +9,7 @@ use ninebit::raster::weights::Number as _;
 use ninebit::texture::{lod, shader, single};
 
 use crate::input::Local;
-use crate::kind::{ANY_BINARY, EXPONENT, Kind, MANTISSA, Range, packed, unpacked};
+use crate::kind::{ANY_BINARY, COORDINATE, EXPONENT, Kind, MANTISSA, NORMAL, Range, packed, unpacked};
 
 /// Whether numbers can be negative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -23,6 +23,8 @@ pub enum Sign {
 /// A helper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Helper {
+    /// A number times a power of two.
+    Shifted,
     /// An edge function to 24 bits.
     Cut(Sign),
     /// A product to 24 bits.
@@ -103,12 +105,16 @@ const SIZE: (Kind, Range) = number(1, 8192);
 /// The bits of a binary32 number.
 const BITS: (Kind, Range) = number(0, u32::MAX as i64);
 
+/// Numbers of up to 62 bits.
+const WIDE: (Kind, Range) = number(-(1 << 62), 1 << 62);
+
 /// Limits of quads: distant coordinates, with half an image.
 const FAR: i64 = FARTHEST + (1 << 32);
 
 impl Helper {
     /// All helpers, in the order of the variants.
-    pub(crate) const ALL: [Helper; 36] = [
+    pub(crate) const ALL: [Helper; 37] = [
+        Helper::Shifted,
         Helper::Cut(Sign::Positive),
         Helper::Product(Sign::Positive),
         Helper::Share(Sign::Positive),
@@ -150,6 +156,7 @@ impl Helper {
     /// Returns the name in printed text, without its prefix; what it is; the rules.
     pub(crate) fn about(self) -> (&'static str, &'static str, &'static str) {
         match self {
+            Helper::Shifted => ("shifted", "floor(n 2^by), for -63 to 63; less or more is as these", "WGT-1"),
             Helper::Cut(Sign::Positive) => ("cut", "n to its first 24 bits", "WGT-1"),
             Helper::Cut(Sign::Any) => ("signed_cut", "n to its first 24 bits", "WGT-1"),
             Helper::Product(Sign::Positive) => ("product", "a b to its first 24 bits", "WGT-1"),
@@ -184,7 +191,7 @@ impl Helper {
                 ("level", "floor(256 log2) of the larger distance from (a, b) to (c, d) or (e, f)", "TEX-10")
             }
             Helper::Split => ("split", "the binary32 number of these bits", "WGT-1"),
-            Helper::Rounded => ("rounded", "the bits of the binary32 number nearest to a", "TSH-4"),
+            Helper::Rounded => ("rounded", "the bits of the binary32 number nearest to n 2^exponent", "TSH-4"),
             Helper::SingleProduct => ("single_product", "a b of binary32 numbers, all as bits", "TSH-4"),
             Helper::SingleSum => ("single_sum", "a + b of binary32 numbers, all as bits", "TSH-4"),
             Helper::AlignedSum => {
@@ -212,6 +219,8 @@ impl Helper {
         const FAR_FLOOR: [(Kind, Range); 4] = [BINARY, SIZE, number(0, 16), number(0, FARTHEST)];
         const QUOTIENT: [(Kind, Range); 2] = [number(-(1 << 16), 1 << 16), number(1, 1 << 30)];
         const MOVED: [(Kind, Range); 5] = [BINARY, BITS, SIZE, number(0, 16), number(0, FARTHEST)];
+        const SHIFTED: [(Kind, Range); 2] = [WIDE, number(-(1 << 17), 1 << 17)];
+        const ROUNDED: [(Kind, Range); 2] = [WIDE, (Kind::Number, EXPONENT)];
         const ROOT: [(Kind, Range); 1] = [number(0, 1 << 60)];
         const SPRITE: [(Kind, Range); 4] = [number(-(1 << 17), 1 << 17), number(0, 511), SIZE, number(0, 16)];
         const LUMINANCE: [(Kind, Range); 4] = [number(-256, 255), number(0, 255), BINARY, BINARY];
@@ -229,8 +238,9 @@ impl Helper {
             Helper::FarFloor => &FAR_FLOOR,
             Helper::Ratio | Helper::Face | Helper::FarFace => &[BINARY, BINARY, SIZE],
             Helper::Level => &[COORDINATE; 6],
+            Helper::Shifted => &SHIFTED,
             Helper::Split => &[BITS],
-            Helper::Rounded => &[BINARY],
+            Helper::Rounded => &ROUNDED,
             Helper::SingleProduct | Helper::SingleSum => &[BITS; 2],
             Helper::AlignedSum => &[BITS; 3],
             Helper::SingleQuotient => &QUOTIENT,
@@ -263,6 +273,7 @@ impl Helper {
             | Helper::SingleSum
             | Helper::AlignedSum
             | Helper::SingleQuotient => BITS.1,
+            Helper::Shifted => WIDE.1,
             Helper::Luminance => (0, 1 << 20),
             Helper::Sprite => (-(1 << 48), 1 << 48),
             Helper::Root => (0, 1 << 30),
@@ -297,8 +308,12 @@ impl Helper {
                 Binary::linear(a(2), [[weight(0), a(1)], [weight(3), a(4)]])
             }
             Helper::Depth => Binary::sum_of_products([[a(0), a(1)], [a(2), a(3)], [a(4), a(5)]]),
-            Helper::Split => Binary::from_bits(n(0)),
-            Helper::Rounded => return Value::Number(single::rounded(a(0))),
+            Helper::Split => {
+                let (mantissa, exponent) = split_bits(n(0));
+                Binary { mantissa, exponent }
+            }
+            Helper::Shifted => return Value::Number(shift(n(0), n(1))),
+            Helper::Rounded => return Value::Number(round_bits(n(0), n(1))),
             Helper::SingleProduct => return Value::Number(single::product(n(0), n(1))),
             Helper::SingleSum => return Value::Number(single::sum(n(0), n(1))),
             Helper::AlignedSum => return Value::Number(single::aligned_sum([n(0), n(1), n(2)])),
@@ -345,15 +360,14 @@ impl Helper {
             // The sum of edge numbers of a covered pixel is never 0.
             Helper::Reciprocal(Sign::Positive) => (1, i32::MAX.into()),
             Helper::Reciprocal(Sign::Any) => MANTISSA,
-            Helper::Rest(Sign::Positive) => (0, 1 << 24),
-            Helper::Rest(Sign::Any) | Helper::CutRest => (-(1 << 24), 1 << 24),
-            Helper::Product(Sign::Positive) | Helper::Sum(Sign::Positive) => (0, 1 << 24),
+            Helper::Product(Sign::Positive) | Helper::Sum(Sign::Positive) | Helper::Rest(Sign::Positive) => {
+                (0, NORMAL.1)
+            }
             Helper::Share(Sign::Positive) => (0, 1 << 29),
             Helper::Share(Sign::Any) => (-(1 << 29), 1 << 29),
-            Helper::Linear(_) | Helper::Depth | Helper::Product(_) | Helper::Sum(_) | Helper::Exponent => {
-                (-(1 << 24), 1 << 24)
-            }
-            _ => (-(1 << 26), 1 << 26),
+            Helper::Product(_) | Helper::Sum(_) | Helper::Rest(_) | Helper::CutRest => NORMAL,
+            Helper::Linear(_) | Helper::Depth | Helper::Exponent => NORMAL,
+            _ => COORDINATE,
         }
     }
 
@@ -361,6 +375,8 @@ impl Helper {
     pub(crate) fn parameter(self, at: usize, kind: Kind, range: Range) -> Local {
         let name = match (self, at) {
             (Helper::Cut(_) | Helper::Root, _) => "n",
+            (Helper::Shifted, _) => ["n", "by"][at],
+            (Helper::Rounded, _) => ["n", "exponent"][at],
             (Helper::Floor | Helper::FarFloor, 1..) => ["", "size", "power", "limit"][at],
             (Helper::Ratio | Helper::Face | Helper::FarFace, 2) => "size",
             (Helper::Moved, 1..) => ["", "offset", "size", "power", "limit"][at],

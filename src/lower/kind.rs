@@ -27,6 +27,12 @@ pub(crate) fn is_wide(range: Range) -> bool {
 /// The range of mantissas of binary numbers.
 pub(crate) const MANTISSA: Range = (-i32::MAX as i64, i32::MAX as i64);
 
+/// The range of mantissas of coordinates, and of what rules take that say no more.
+pub(crate) const COORDINATE: Range = (-(1 << 26), 1 << 26);
+
+/// The range of mantissas of normal numbers.
+pub(crate) const NORMAL: Range = (-(1 << 24), 1 << 24);
+
 /// The range of exponents of binary numbers.
 pub(crate) const EXPONENT: Range = (-16000, 16000);
 

@@ -10,8 +10,8 @@ use ninebit::texture::lod::Selection;
 use ninebit::texture::planned::PlannedUnit;
 
 use crate::binary::Interpolant;
-use crate::code::{Code, Operation};
-use crate::coordinates::{Facing, is_point, log2_ratio, pairs_of_quad};
+use crate::code::{COORDINATE, Code, Operation};
+use crate::coordinates::{Facing, OnFace, is_point, log2_ratio, pairs_of_quad};
 use crate::input::Weight;
 use crate::number::{Number, Word};
 use crate::texel::{Sampler, Texels};
@@ -57,6 +57,8 @@ pub(crate) enum Place<'a> {
     Ends([Number<'a>; 2]),
     /// A direction that the dot unit computed (TSH-4, TSH-5).
     Vector([Interpolant<'a>; 3]),
+    /// A direction whose face is known.
+    OnFace(OnFace<'a>),
 }
 
 /// A unit at a pixel.
@@ -357,7 +359,7 @@ impl<'a, 's, 'w> Unit<'a, 's, 'w> {
     /// SHD-1: returns r, or r/q.
     pub(crate) fn third(&self, projection: Projection) -> Binary<Number<'a>> {
         let code = self.interpolator.code;
-        let parts = |n: usize| self.component(self.sample, n).parts(code, (-(1 << 26), 1 << 26));
+        let parts = |n: usize| self.component(self.sample, n).parts(code, COORDINATE);
         let (r, q) = (parts(2), (projection == Projection::Ratio).then(|| parts(3)));
         code.by("SHD-1");
         q.map_or(r, |q| r.positive_ratio(q))

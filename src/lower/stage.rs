@@ -10,7 +10,7 @@ use ninebit::texture::stage::PlannedShader;
 use ninebit::texture::{dot, shader, single};
 
 use crate::binary::{Interpolant, counted};
-use crate::code::{Code, Operand};
+use crate::code::{COORDINATE, Code, Operand};
 use crate::helper::Helper;
 use crate::number::Number;
 use crate::pixel::UNBOUND;
@@ -36,7 +36,9 @@ impl<'a> Single<'a> {
 
     /// Returns the nearest to a number.
     pub(crate) fn rounded(code: &'a Code, number: Interpolant<'a>) -> Single<'a> {
-        Single(counted(code, Helper::Rounded, &[number.operand(code)]))
+        let Binary { mantissa, exponent } = number.parts(code, COORDINATE);
+        code.by("TSH-4");
+        Single(mantissa.rounded(exponent))
     }
 
     /// Returns the nearest to a fraction of [`dot::fractions`].
@@ -258,7 +260,7 @@ impl<'a> Interpolator<'a> {
     }
 
     fn parts(&self, index: usize, n: usize, sample: &Sample<'a>) -> Binary<Number<'a>> {
-        self.component(index, n, sample).parts(self.code, (-(1 << 26), 1 << 26))
+        self.component(index, n, sample).parts(self.code, COORDINATE)
     }
 
     /// TSH-9: returns a coordinate, limited, as a byte.

@@ -2,11 +2,12 @@
 
 use std::ops::{BitAnd, BitOr, BitXor, Not};
 
-use ninebit::number::{Choice, Integer, newton_root};
+use ninebit::number::{Choice, Integer, newton_root, split_bits};
 use ninebit::state::CompareFunction;
 
 use crate::binary::counted;
-use crate::code::{Code, Operand, Operation, Table, Test};
+use crate::body::parts;
+use crate::code::{Code, NORMAL, Operand, Operation, Table, Test};
 use crate::helper::Helper;
 use crate::number::Number;
 
@@ -122,6 +123,13 @@ impl<'a> BitXor for Truth<'a> {
 
 impl Choice for Truth<'_> {}
 
+/// Returns the call of a helper that is part of a rule, whose lines it does not end.
+fn called(helper: Helper, of: &[Number<'_>]) -> Operation {
+    let mut operands = [Operand::Constant(0); 6];
+    operands.iter_mut().zip(of).for_each(|(operand, number)| *operand = number.operand());
+    Operation::Call(helper, operands)
+}
+
 impl<'a> Integer for Number<'a> {
     type Choice = Truth<'a>;
 
@@ -180,6 +188,20 @@ impl<'a> Integer for Number<'a> {
             Some(code) => counted(code, Helper::Root, &[self.operand()]),
             None => Number::Constant(newton_root(self.range().0)),
         }
+    }
+    fn shifted(self, by: Number<'a>) -> Number<'a> {
+        self.made(&[by], called(Helper::Shifted, &[self, by]))
+    }
+    fn split(self) -> (Number<'a>, Number<'a>) {
+        let Some(code) = self.code() else {
+            let (mantissa, exponent) = split_bits(self.range().0);
+            return (Number::Constant(mantissa), Number::Constant(exponent));
+        };
+        let parts = parts(code, code.make(called(Helper::Split, &[self])), NORMAL);
+        (parts.mantissa, parts.exponent)
+    }
+    fn rounded(self, exponent: Number<'a>) -> Number<'a> {
+        self.made(&[exponent], called(Helper::Rounded, &[self, exponent]))
     }
     fn entry(self, table: &'static [u8]) -> Number<'a> {
         self.made(&[], Operation::Entry(Table(table), self.operand()))

@@ -14,7 +14,7 @@ use ninebit::rop::stencil;
 use ninebit::state::*;
 
 use crate::binary::Interpolant;
-use crate::code::Code;
+use crate::code::{COORDINATE, Code};
 use crate::helper::Sign;
 use crate::input::Input;
 use crate::number::{Number, Word};
@@ -137,7 +137,7 @@ impl<'a> Interpolator<'a> {
         line: [Binary<Number<'a>>; 2],
         value: Interpolant<'a>,
     ) -> Number<'a> {
-        let parts = |value: Interpolant<'a>| value.parts(self.code, (-(1 << 26), 1 << 26));
+        let parts = |value: Interpolant<'a>| value.parts(self.code, COORDINATE);
         let byte = match mode {
             None => {
                 let value = parts(value);

@@ -88,9 +88,16 @@ fn calls<'l, L: Iterator<Item = &'l Line>>(
     lines: impl Fn() -> L,
 ) -> String {
     let mut out = String::new();
-    let helpers: BTreeSet<Helper> = lines().filter_map(|line| line.operation.helper()).collect();
-    let helpers = Helper::ALL.into_iter().filter(|helper| helpers.contains(helper));
-    let helpers: Vec<_> = helpers.map(|helper| (helper, helper.lines())).collect();
+    let mut called: BTreeSet<Helper> = lines().filter_map(|line| line.operation.helper()).collect();
+    let mut helpers = Vec::new();
+    // A helper calls earlier ones.
+    for helper in Helper::ALL.into_iter().rev() {
+        if called.contains(&helper) {
+            let (lines, result) = helper.lines();
+            called.extend(lines.iter().filter_map(|line| line.operation.helper()));
+            helpers.insert(0, (helper, (lines, result)));
+        }
+    }
     let mut tables: BTreeSet<Table> = lines().filter_map(|line| line.operation.table()).collect();
     tables.extend(helpers.iter().flat_map(|(_, (lines, _))| lines).filter_map(|line| line.operation.table()));
     for (name, table) in TABLES.into_iter().filter(|(_, table)| tables.contains(table)) {

@@ -39,6 +39,22 @@ pub trait Integer: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output =
     /// Returns the floor of the root of a number of at most 60 bits that is not negative.
     fn root(self) -> Self;
 
+    /// Returns the floor of the number times 2^`by`, for -63 to 63; less or more is as these.
+    #[inline(always)]
+    fn shifted(self, by: Self) -> Self {
+        shift(self, by)
+    }
+    /// Returns mantissa and exponent of the finite binary32 number that has these bits: 24 bits, or 0.
+    #[inline(always)]
+    fn split(self) -> (Self, Self) {
+        split_bits(self)
+    }
+    /// Returns the bits of the binary32 number nearest to this number, of at most 61 bits, times 2^`exponent`. Zero is positive, and too large numbers
+    /// are infinite.
+    #[inline(always)]
+    fn rounded(self, exponent: Self) -> Self {
+        round_bits(self, exponent)
+    }
     /// Returns the number, which is known to be within these bounds.
     #[inline(always)]
     fn within(self, _low: i64, _high: i64) -> Self {
@@ -98,8 +114,46 @@ pub fn newton_root<I: Integer>(n: I) -> I {
     root - one.or(n.is_below(root * root), I::new(0))
 }
 
+/// Returns floor(n 2^`by`), for -63 to 63; less or more is as these.
+#[inline(always)]
+pub fn shift<I: Integer>(n: I, by: I) -> I {
+    let up = by.limited(-63, 63);
+    n.down((I::new(0) - up).greatest(I::new(0))).or(up.is_negative(), n.up(up.greatest(I::new(0))))
+}
+
 /// Number of the bit above the highest of 0: below that of all other numbers.
 pub(crate) const LEAST_TOP: i64 = -4096;
+
+/// Returns mantissa and exponent of the finite binary32 number that has these bits: 24 bits, or 0.
+#[inline(always)]
+pub fn split_bits<I: Integer>(bits: I) -> (I, I) {
+    let (field, fraction) = (bits.down(I::new(23)).masked(255), bits.masked((1 << 23) - 1));
+    // A subnormal number has the exponent of the least normal one.
+    let mantissa = fraction + I::new(0).or(field.is_zero(), I::new(1 << 23));
+    let exponent = field.greatest(I::new(1)) - I::new(150);
+    let up = I::new(24) - mantissa.bits();
+    let exponent = I::new(LEAST_TOP).or(mantissa.is_zero(), exponent - up);
+    let mantissa = mantissa.up(up).within(0, (1 << 24) - 1);
+    (mantissa.negated(!bits.down(I::new(31)).is_zero()), exponent)
+}
+
+/// Returns the bits of the binary32 number nearest to n 2^`exponent`, with ties to even. Zero is positive, and too large numbers are infinite.
+pub fn round_bits<I: Integer>(n: I, exponent: I) -> I {
+    let (zero, one, bits) = (I::new(0), I::new(1), 24);
+    let mantissa = n.magnitude();
+    // The last bit of the smallest numbers is 2^-149.
+    let last = (exponent + mantissa.bits() - I::new(bits)).greatest(I::new(-149));
+    let dropped = last - exponent;
+    let (down, up) = (dropped.limited(0, 62), (zero - dropped).limited(0, bits - 1));
+    // Half of the last bit rounds up what is above it, and it itself if that makes the last bit 0.
+    let half = one.up(down).down(one);
+    let odd = mantissa.down(down).masked(1);
+    let significant = (mantissa + (half - one + odd).greatest(zero)).down(down).up(up).within(0, 1 << bits);
+    // The leading bit, which is not stored, counts as one step of the exponent, as a carry into the next bit does.
+    let field = last.least(I::new(200)) + I::new(150);
+    let pattern = (field.up(I::new(bits - 1)) + significant - I::new(1 << (bits - 1))).limited(0, 0x7f80_0000);
+    zero.or(n.is_zero(), pattern + I::new(1 << 31).or(n.is_negative(), zero))
+}
 
 /// Converts numbers, each a mantissa and an exponent, to block floating point. The number of the largest magnitude
 /// keeps exactly `keep` bits (at most 62), and the others are floored to the same exponent. Returns the mantissas and
@@ -113,9 +167,8 @@ pub(crate) fn align<I: Integer, const N: usize>(values: [(I, I); N], keep: i64) 
     }
     let top = top.or(least.is_below(top), I::new(0));
     let aligned = values.map(|(n, exponent)| {
-        let up = (exponent + I::new(keep) - top).limited(-63, 63);
         // A number other than 0 that is shifted up stays within `keep` bits.
-        n.down((I::new(0) - up).greatest(I::new(0))).or(up.is_negative(), n.up(up.greatest(I::new(0))))
+        n.shifted(exponent + I::new(keep) - top)
     });
     (aligned, top - I::new(keep))
 }

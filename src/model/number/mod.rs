@@ -59,7 +59,7 @@ pub mod transform;
 
 pub use block::{Half, Narrow, Quarter, Swar2};
 pub use ideal_tracks::{IDEAL_TRACKS, IdealTracks};
-pub use integer::{Choice, Integer, newton_root};
+pub use integer::{Choice, Integer, newton_root, round_bits, shift, split_bits};
 pub(crate) use integer::{LEAST_TOP, align};
 pub use lanes16::{LANES, Lanes16};
 pub use pair::Pair;

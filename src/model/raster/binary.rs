@@ -48,14 +48,8 @@ impl<I: Integer> Binary<I> {
     /// Converts a finite binary32 number, of which bits are given, exactly. It is [normal](Self::first_bits).
     #[inline(always)]
     pub fn from_bits(bits: I) -> Binary<I> {
-        let (field, fraction) = (bits.down(I::new(23)).masked(255), bits.masked((1 << 23) - 1));
-        // A subnormal number has the exponent of the least normal one.
-        let mantissa = fraction + I::new(0).or(field.is_zero(), I::new(1 << 23));
-        let exponent = field.greatest(I::new(1)) - I::new(150);
-        let up = I::new(24) - mantissa.bits();
-        let exponent = I::new(LEAST_TOP).or(mantissa.is_zero(), exponent - up);
-        let mantissa = mantissa.up(up).within(0, (1 << 24) - 1);
-        Binary { mantissa: mantissa.negated(!bits.down(I::new(31)).is_zero()), exponent }
+        let (mantissa, exponent) = bits.split();
+        Binary { mantissa, exponent }
     }
 
     /// Returns a whole number.

@@ -17,11 +17,6 @@ const LARGEST_FINITE: i64 = INFINITY - 1;
 /// The bit of the sign.
 const SIGN: i64 = 1 << 31;
 
-/// Number of significant bits.
-const BITS: i64 = 24;
-/// The exponent of the last bit of the smallest numbers.
-const LEAST_EXPONENT: i64 = -149;
-
 /// Number of bits that a quotient has after the point before it is rounded.
 const QUOTIENT_BITS: i64 = 44;
 
@@ -63,20 +58,7 @@ pub fn negated<I: Integer>(x: I) -> I {
 
 /// Returns the number nearest to another, whose mantissa has at most 61 bits. Zero is positive, and too large numbers are infinite.
 pub fn rounded<I: Integer>(number: Binary<I>) -> I {
-    let (zero, one) = (I::new(0), I::new(1));
-    let mantissa = number.mantissa.magnitude();
-    let last = (number.exponent + mantissa.bits() - I::new(BITS)).greatest(I::new(LEAST_EXPONENT));
-    let dropped = last - number.exponent;
-    let (down, up) = (dropped.limited(0, 62), (zero - dropped).limited(0, BITS - 1));
-    // Half of the last bit rounds up what is above it, and it itself if that makes the last bit 0.
-    let half = one.up(down).down(one);
-    let odd = mantissa.down(down).masked(1);
-    let significant = (mantissa + (half - one + odd).greatest(zero)).down(down).up(up).within(0, 1 << BITS);
-    // The leading bit, which is not stored, counts as one step of the exponent, as a carry into the next bit does.
-    let leading = 1 << (BITS - 1);
-    let field = last.least(I::new(200)) + I::new(150);
-    let pattern = (field.up(I::new(BITS - 1)) + significant - I::new(leading)).limited(0, INFINITY);
-    zero.or(number.mantissa.is_zero(), signed(pattern, number.mantissa.is_negative()))
+    number.mantissa.rounded(number.exponent)
 }
 
 /// Returns a b.

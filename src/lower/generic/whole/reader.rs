@@ -7,7 +7,6 @@ use ninebit::texture::planned::PlannedUnit;
 
 use crate::binary::Interpolant;
 use crate::code::{EXPONENT, Range};
-use crate::coordinates::Facing;
 use crate::generic::pieces::Reader;
 use crate::helper::Helper;
 use crate::number::Number;
@@ -36,6 +35,10 @@ impl<'a> Reader<'a> {
     /// Returns a binary number.
     pub(super) fn binary(&self, name: &'static str) -> Interpolant<'a> {
         Interpolant::local(self.code, name)
+    }
+
+    pub(super) fn binaries<const N: usize>(&self, names: [&'static str; N]) -> [Interpolant<'a>; N] {
+        names.map(|name| self.binary(name))
     }
 
     /// Returns the truth of a flag.
@@ -69,7 +72,7 @@ impl<'a> Reader<'a> {
 
     /// Returns the sample whose weights are parameters.
     pub(super) fn sample(&self) -> Sample<'a> {
-        let [first, third, sum] = ["b[0]", "b[1]", "sum"].map(|name| self.binary(name));
+        let [first, third, sum] = self.binaries(["b[0]", "b[1]", "sum"]);
         Sample { b: [first, third], sum }
     }
 
@@ -95,12 +98,6 @@ impl<'a> Reader<'a> {
             quad: [Number::ZERO; 2],
             elsewhere: &elsewhere,
         })
-    }
-
-    /// Returns the face that a direction meets.
-    pub(super) fn face(&self) -> Facing<'a> {
-        let [is_x, is_y, negative] = self.truths(["facing[0]", "facing[1]", "facing[2]"]);
-        Facing { is_x, is_y, negative }
     }
 
     /// Returns both parts of a number as results.

@@ -35,7 +35,8 @@ fn shader(luminance: bool) -> PlannedShader {
     PlannedShader { stages: [stage; TEXTURE_UNITS] }
 }
 
-pub(super) fn pieces(maker: &Maker) -> Vec<Piece> {
+/// What stages make of coordinates, bytes and registers.
+fn registers(maker: &Maker) -> Vec<Piece> {
     let passed = maker.case(0, "", |reader| {
         let sample = reader.sample();
         [0, 1, 2, 3].map(|n| reader.interpolator().passed(ANY_UNIT, n, &sample)).to_vec()
@@ -66,6 +67,39 @@ pub(super) fn pieces(maker: &Maker) -> Vec<Piece> {
         reader.code.by("TSH-1");
         vec![byte(reader.local("held", REGISTER), reader.truth("is_doubled"))]
     });
+    let lit = maker.case(0, "", |reader| {
+        let line = reader.patterns(["scale", "offset"]).map(|pattern| reader.number_of(pattern).operand(reader.code));
+        vec![lit(reader.code, reader.local("channel", REGISTER), reader.local("red", (0, 255)), line)]
+    });
+    let converted = maker.case(0, "", |reader| {
+        reader.code.by("TEX-19");
+        let held = reader.all(["held[0]", "held[1]", "held[2]"], REGISTER);
+        [0, 1, 2].map(|channel| yuv::converted(channel, held)).to_vec()
+    });
+    vec![
+        piece("nb_converted", "A colour of Y, Cb and Cr.", "@in @int held[3]", vec![converted]).filling("converted[3]"),
+        piece("nb_passed", "Coordinates as a colour.", OWN, vec![passed]).filling("loaded[4]"),
+        piece(
+            "nb_drops",
+            "Whether a coordinate has a sign that is dropped.",
+            "@in @binary own[4], @in @int not_negative[4]",
+            vec![drops],
+        ),
+        piece("nb_doubled", "The channels of a register that hold twice their byte.", "@in @int signs[4]", doubled)
+            .by("halves")
+            .filling("doubled[4]"),
+        piece("nb_byte", "The byte of a channel of a register.", "@int held, @int is_doubled", vec![bytes]),
+        piece(
+            "nb_lit",
+            "A channel times the luminance.",
+            "@int channel, @int red, @long scale, @long offset",
+            vec![lit],
+        ),
+    ]
+}
+
+/// The dot unit.
+fn dots(maker: &Maker) -> Vec<Piece> {
     let fractions = DOT_MAPPINGS
         .iter()
         .map(|(mapping, code)| {
@@ -77,7 +111,7 @@ pub(super) fn pieces(maker: &Maker) -> Vec<Piece> {
         })
         .collect();
     let component = maker.case(0, "", |reader| {
-        let b = ["b[0]", "b[1]"].map(|name| reader.binary(name));
+        let b = reader.binaries(["b[0]", "b[1]"]);
         let of = reader.interpolator().linear(|part| Field::Coordinate(ANY_UNIT, ANY_COMPONENT, part));
         reader.code.by("WGT-1");
         vec![reader.result(of.at(b))]
@@ -106,28 +140,7 @@ pub(super) fn pieces(maker: &Maker) -> Vec<Piece> {
         reader.code.by("TSH-7");
         vec![moved(reader.patterns(["m", "n"]).map(Single), reader.all(["blue", "green"], (0, 255))).0]
     });
-    let lit = maker.case(0, "", |reader| {
-        let line = reader.patterns(["scale", "offset"]).map(|pattern| reader.number_of(pattern).operand(reader.code));
-        vec![lit(reader.code, reader.local("channel", REGISTER), reader.local("red", (0, 255)), line)]
-    });
-    let converted = maker.case(0, "", |reader| {
-        reader.code.by("TEX-19");
-        let held = reader.all(["held[0]", "held[1]", "held[2]"], REGISTER);
-        [0, 1, 2].map(|channel| yuv::converted(channel, held)).to_vec()
-    });
     vec![
-        piece("nb_converted", "A colour of Y, Cb and Cr.", "@in @int held[3]", vec![converted]).filling("converted[3]"),
-        piece("nb_passed", "Coordinates as a colour.", OWN, vec![passed]).filling("loaded[4]"),
-        piece(
-            "nb_drops",
-            "Whether a coordinate has a sign that is dropped.",
-            "@in @binary own[4], @in @int not_negative[4]",
-            vec![drops],
-        ),
-        piece("nb_doubled", "The channels of a register that hold twice their byte.", "@in @int signs[4]", doubled)
-            .by("halves")
-            .filling("doubled[4]"),
-        piece("nb_byte", "The byte of a channel of a register.", "@int held, @int is_doubled", vec![bytes]),
         piece(
             "nb_component",
             "A component of a unit's coordinates.",
@@ -160,11 +173,9 @@ pub(super) fn pieces(maker: &Maker) -> Vec<Piece> {
             "@long m, @long n, @int blue, @int green",
             vec![bumped],
         ),
-        piece(
-            "nb_lit",
-            "A channel times the luminance.",
-            "@int channel, @int red, @long scale, @long offset",
-            vec![lit],
-        ),
     ]
+}
+
+pub(super) fn pieces(maker: &Maker) -> Vec<Piece> {
+    [registers(maker), dots(maker)].into_iter().flatten().collect()
 }

@@ -46,6 +46,7 @@ pub(super) const WAYS: [(Way, &str, &str); 9] = [
 /// Classes of formats: bytes, or halves.
 pub(super) const CLASSES: [TextureFormat; 3] = [TextureFormat::A8R8G8B8, TextureFormat::R16B16, TextureFormat::Y16];
 
+const D: [&str; 3] = ["d[0]", "d[1]", "d[2]"];
 const TEXELS: [&str; 4] = ["t[0]", "t[1]", "t[2]", "t[3]"];
 const LANES: [&str; 4] = ["lanes[0]", "lanes[1]", "lanes[2]", "lanes[3]"];
 pub(super) const SIGNS: [&str; 4] = ["signs[0]", "signs[1]", "signs[2]", "signs[3]"];
@@ -63,7 +64,7 @@ fn place<'a>(maker: &Maker, reader: &Reader<'a>, way: Way) -> (Place<'a>, bool) 
     let place = match way {
         Way::Own | Way::OnFace => Place::Own(Projection::Ratio),
         Way::Point => Place::Own(Projection::Plane),
-        Way::Face | Way::Plane => Place::Vector(["d[0]", "d[1]", "d[2]"].map(|name| reader.binary(name))),
+        Way::Face | Way::Plane => Place::OnFace(reader.binaries(["face[0]", "face[1]", "face[2]"])),
         Way::Moved => Place::Moved(reader.patterns(given)),
         Way::Floats => Place::Floats(reader.patterns(given)),
         Way::Ends => Place::Ends(reader.patterns(given)),
@@ -75,15 +76,15 @@ fn place<'a>(maker: &Maker, reader: &Reader<'a>, way: Way) -> (Place<'a>, bool) 
     (place, way == Way::Point)
 }
 
-/// Returns a unit that samples by a way, and the face that its direction meets.
-fn unit_of<'a>(reader: &Reader<'a>, way: Way) -> (PlannedUnit, Option<Facing<'a>>) {
+/// Returns a unit that samples by a way.
+fn unit_of(way: Way) -> PlannedUnit {
     let has_faces = matches!(way, Way::Face | Way::OnFace | Way::Ends);
     let kind = if has_faces { TextureKind::Cube } else { TextureKind::TwoDimensional };
     let mut unit = planned(kind, TextureFormat::A8R8G8B8);
     if way == Way::OnFace {
         unit.stage.operation = ShaderOperation::Sample2D;
     }
-    (unit, matches!(way, Way::Face | Way::Plane).then(|| reader.face()))
+    unit
 }
 
 fn by_way(maker: &Maker, of: impl for<'a> Fn(&mut Reader<'a>, Way) -> Vec<Number<'a>>) -> Vec<Case> {
@@ -131,24 +132,8 @@ pub(super) fn copied<'a>(signs: [Number<'a>; 4], of: impl Fn([bool; 4]) -> bool)
     channel.map_or(Number::ZERO, |channel| signs[channel])
 }
 
-fn coordinates(maker: &Maker) -> Vec<Piece> {
-    let near = by_way(maker, |reader, way| {
-        let sides = reader.all(["width", "height"], SIDE);
-        let (unit, facing) = unit_of(reader, way);
-        reader.on(&unit, place(maker, reader, way), |unit| {
-            let uv = unit.coordinates(sides, facing);
-            uv.map(|at| at.within(COORDINATE.0, COORDINATE.1)).to_vec()
-        })
-    });
-    let far = by_way(maker, |reader, way| {
-        let sides = reader.all(["width", "height"], SIDE);
-        let (unit, facing) = unit_of(reader, way);
-        let pixel = [Input::X, Input::Y].map(|input| reader.interpolator().input(input));
-        reader.on(&unit, place(maker, reader, way), |unit| {
-            let (uv, behind) = unit.far_coordinates(pixel, sides, facing);
-            uv.into_iter().chain([reader.flag(behind)]).collect()
-        })
-    });
+/// The directions in which units sample.
+fn directions(maker: &Maker) -> Vec<Piece> {
     let direction = maker.case(0, "", |reader| {
         let place = Place::Own(Projection::Direction);
         let direction = reader.on(&plain(), (place, false), |unit| unit.direction(place, unit.sample));
@@ -159,30 +144,18 @@ fn coordinates(maker: &Maker) -> Vec<Piece> {
         of.map(|pattern| reader.result(reader.number_of(pattern))).to_vec()
     });
     let facing = maker.case(0, "", |reader| {
-        let direction = ["d[0]", "d[1]", "d[2]"].map(|name| reader.binary(name));
-        let place = Place::Vector(direction);
-        let facing = reader.on(&plain(), (place, false), |unit| unit.facing(direction));
+        let direction = reader.binaries(D);
+        let facing = reader.on(&plain(), (Place::Vector(direction), false), |unit| unit.facing(direction));
         let flags = [facing.is_x, facing.is_y, facing.negative].map(|truth| reader.flag(truth));
         flags.into_iter().chain([facing.number()]).collect()
     });
-    let layer = by_mode(maker, 1, |reader, unit| {
-        let layers = reader.local("layers", (1, 512));
-        let place = (Place::Own(Projection::Ratio), false);
-        let w = reader.local("w", COORDINATE);
-        let (layer, beyond) = reader.on(unit, place, |unit| unit.layer_at(w, layers, Number::Constant(1)));
-        vec![layer, reader.flag(beyond)]
+    let face = maker.case(0, "", |reader| {
+        let direction = reader.binaries(D);
+        let [is_x, is_y, negative] = reader.truths(["facing[0]", "facing[1]", "facing[2]"]);
+        let of = Facing { is_x, is_y, negative };
+        let face = reader.on(&plain(), (Place::Vector(direction), false), |unit| unit.on_face(direction, of));
+        face.map(|number| reader.result(number)).to_vec()
     });
-    let across = maker.case(0, "", |reader| {
-        let (layers, place) = (reader.local("layers", (1, 512)), (Place::Own(Projection::Ratio), false));
-        vec![reader.on(&plain(), place, |unit| unit.across_layers(layers)).within(COORDINATE.0, COORDINATE.1)]
-    });
-    let third = maker.case(0, "", |reader| {
-        let place = (Place::Own(Projection::Ratio), false);
-        let third = reader.on(&plain(), place, |unit| unit.third(Projection::Ratio));
-        reader.parts(third)
-    });
-    let placed = "@triangle, @in @binary own[4], @in @long given[3], @in @binary d[3], @in @int facing[4], @int x, @int y, @int width, @int height";
-    let far_placed = "@triangle, @in @binary own[4], @binary sum, @in @long given[3], @in @binary d[3], @in @int facing[4], @int x, @int y, @int width, @int height";
     vec![
         piece("nb_direction", "A unit's own direction into a cube map.", OWN, vec![direction]).filling("d[3]").binary(),
         piece("nb_vector", "A direction of the dot unit.", "@in @long given[3]", vec![vector]).filling("d[3]").binary(),
@@ -193,6 +166,31 @@ fn coordinates(maker: &Maker) -> Vec<Piece> {
             vec![facing],
         )
         .filling("facing[4]"),
+        piece("nb_face", "sc, tc and |ma| on a face.", "@in @binary d[3], @in @int facing[4]", vec![face])
+            .filling("face[3]")
+            .binary(),
+    ]
+}
+
+fn coordinates(maker: &Maker) -> Vec<Piece> {
+    let near = by_way(maker, |reader, way| {
+        let sides = reader.all(["width", "height"], SIDE);
+        reader.on(&unit_of(way), place(maker, reader, way), |unit| {
+            let uv = unit.coordinates(sides, None);
+            uv.map(|at| at.within(COORDINATE.0, COORDINATE.1)).to_vec()
+        })
+    });
+    let far = by_way(maker, |reader, way| {
+        let sides = reader.all(["width", "height"], SIDE);
+        let pixel = [Input::X, Input::Y].map(|input| reader.interpolator().input(input));
+        reader.on(&unit_of(way), place(maker, reader, way), |unit| {
+            let (uv, behind) = unit.far_coordinates(pixel, sides, None);
+            uv.into_iter().chain([reader.flag(behind)]).collect()
+        })
+    });
+    let placed = "@triangle, @in @binary own[4], @in @long given[3], @in @binary face[3], @int x, @int y, @int width, @int height";
+    let far_placed = "@triangle, @in @binary own[4], @binary sum, @in @long given[3], @in @binary face[3], @int x, @int y, @int width, @int height";
+    vec![
         piece("nb_coordinates", "u and v in 1/256 texel.", placed, near).by("way").filling("uv[2]"),
         piece(
             "nb_far_coordinates",
@@ -203,6 +201,27 @@ fn coordinates(maker: &Maker) -> Vec<Piece> {
         .by("way")
         .filling("far[3]")
         .wide(),
+    ]
+}
+
+/// The third coordinate: of volumes, and the reference of depths.
+fn third(maker: &Maker) -> Vec<Piece> {
+    let place = (Place::Own(Projection::Ratio), false);
+    let layer = by_mode(maker, 1, |reader, unit| {
+        let layers = reader.local("layers", (1, 512));
+        let w = reader.local("w", COORDINATE);
+        let (layer, beyond) = reader.on(unit, place, |unit| unit.layer_at(w, layers, Number::Constant(1)));
+        vec![layer, reader.flag(beyond)]
+    });
+    let across = maker.case(0, "", |reader| {
+        let layers = reader.local("layers", (1, 512));
+        vec![reader.on(&plain(), place, |unit| unit.across_layers(layers)).within(COORDINATE.0, COORDINATE.1)]
+    });
+    let reference = maker.case(0, "", |reader| {
+        let third = reader.on(&plain(), place, |unit| unit.third(Projection::Ratio));
+        reader.parts(third)
+    });
+    vec![
         piece(
             "nb_across_layers",
             "The coordinate in 1/256 layer of a volume.",
@@ -212,7 +231,7 @@ fn coordinates(maker: &Maker) -> Vec<Piece> {
         piece("nb_layer", "The layer at a coordinate, and whether it is beyond them.", "@int w, @int layers", layer)
             .by("mode")
             .filling("layer[2]"),
-        piece("nb_reference", "r/q: mantissa and exponent.", OWN, vec![third]).filling("v[2]").wide(),
+        piece("nb_reference", "r/q: mantissa and exponent.", OWN, vec![reference]).filling("v[2]").wide(),
     ]
 }
 
@@ -248,25 +267,6 @@ fn levels(maker: &Maker) -> Vec<Piece> {
             })
         })
         .collect();
-    let half = maker.case(0, "", |reader| vec![side(reader.local("first", SIDE), reader.local("level", LEVEL))]);
-    let axis = by_mode(maker, SIDES.len(), |reader, unit| {
-        let (at, size) = (reader.local("at", COORDINATE), reader.local("size", SIDE));
-        let is_linear = reader.truth("is_linear");
-        let place = (Place::Own(Projection::Plane), false);
-        let ([first, second], weight) =
-            reader.on(unit, place, |of| of.along(unit.state.address_s, at, size, is_linear));
-        vec![first.0, reader.flag(first.1), second.0, reader.flag(second.1), weight]
-    });
-    let offset = maker.flagged(["none", "border texels"], |reader, border| {
-        let [x, y] = reader.all(["x", "y"], (-4, 4099));
-        vec![PlannedUnit { border, ..plain() }.texel_offset(reader.local("width", SIDE), x, y)]
-    });
-    let words = maker.flagged(["none", "border texels"], |reader, border| {
-        // The index of the texel that would be the first after the last row.
-        let beyond = Number::Constant(if border { BORDER_TEXELS.into() } else { 0 });
-        let [width, height] = reader.all(["width", "height"], SIDE);
-        vec![PlannedUnit { border, ..plain() }.texel_offset(width, Number::ZERO - beyond, height + beyond)]
-    });
     vec![
         piece("nb_lod", "The lod of a quad.", "@in @long quad[6], @int behind", vec![lod]),
         piece(
@@ -287,6 +287,31 @@ fn levels(maker: &Maker) -> Vec<Piece> {
         piece("nb_min_filter", "Whether a minification filter mixes texels, and how it mixes levels.", "", filters)
             .by("code")
             .filling("filters[2]"),
+    ]
+}
+
+/// Where levels and their texels are.
+fn addresses(maker: &Maker) -> Vec<Piece> {
+    let half = maker.case(0, "", |reader| vec![side(reader.local("first", SIDE), reader.local("level", LEVEL))]);
+    let axis = by_mode(maker, SIDES.len(), |reader, unit| {
+        let (at, size) = (reader.local("at", COORDINATE), reader.local("size", SIDE));
+        let is_linear = reader.truth("is_linear");
+        let place = (Place::Own(Projection::Plane), false);
+        let ([first, second], weight) =
+            reader.on(unit, place, |of| of.along(unit.state.address_s, at, size, is_linear));
+        vec![first.0, reader.flag(first.1), second.0, reader.flag(second.1), weight]
+    });
+    let offset = maker.flagged(["none", "border texels"], |reader, border| {
+        let [x, y] = reader.all(["x", "y"], (-4, 4099));
+        vec![PlannedUnit { border, ..plain() }.texel_offset(reader.local("width", SIDE), x, y)]
+    });
+    let words = maker.flagged(["none", "border texels"], |reader, border| {
+        // The index of the texel that would be the first after the last row.
+        let beyond = Number::Constant(if border { BORDER_TEXELS.into() } else { 0 });
+        let [width, height] = reader.all(["width", "height"], SIDE);
+        vec![PlannedUnit { border, ..plain() }.texel_offset(width, Number::ZERO - beyond, height + beyond)]
+    });
+    vec![
         piece("nb_side", "The side of a level.", "@int first, @int level", vec![half]),
         piece(
             "nb_axis",
@@ -415,5 +440,6 @@ fn filters(maker: &Maker) -> Vec<Piece> {
 }
 
 pub(super) fn pieces(maker: &Maker) -> Vec<Piece> {
-    [coordinates(maker), levels(maker), texels(maker), filters(maker)].into_iter().flatten().collect()
+    let of_texels = [levels(maker), addresses(maker), texels(maker), filters(maker)];
+    [directions(maker), coordinates(maker), third(maker)].into_iter().chain(of_texels).flatten().collect()
 }

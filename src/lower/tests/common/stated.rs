@@ -16,7 +16,7 @@ use crate::setting::{bytes, compiler, run};
 use crate::shaded::write_shaders;
 
 /// Largest number of lines that the text may have.
-const LINES: usize = 3610;
+const LINES: usize = 3480;
 
 /// The programs that are compiled, by chip and policies.
 #[derive(Default)]
