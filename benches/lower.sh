@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Times printed C on the first draw of scenes: nanoseconds a pixel on one core, gcc -O2, over 4,096 pixels that are given at random, the median of nine runs. Once the
-# function of the draw, once the generic text, which reads the draw's register words while it runs, and once the whole pixel, in a triangle in perspective.
+# function of the draw, once the generic text, which reads the draw's register words while it runs, and the whole pixel, in a triangle in perspective: at any places, and eight of a row.
 #
 #     benches/lower.sh SCENE...
 #
@@ -21,6 +21,9 @@ cat > "$work/bench.c" << 'END'
 #include <stdlib.h>
 #include <time.h>
 enum { PIXELS = 4096, TURNS = 500, RUNS = 9 };
+#ifndef STEP
+#define STEP 1
+#endif
 #include "given.h"
 static int by_size(const void *a, const void *b) { return (*(const double *)a > *(const double *)b) - (*(const double *)a < *(const double *)b); }
 int main(void)
@@ -32,7 +35,7 @@ int main(void)
         struct timespec from, to;
         clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &from);
         for (int turn = 0; turn < TURNS; turn++)
-            for (int n = 0; n < PIXELS; n++) sum += pixel(n);
+            for (int n = 0; n < PIXELS; n += STEP) sum += pixel(n);
         clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &to);
         times[run] = ((double)(to.tv_sec - from.tv_sec) * 1e9 + (double)(to.tv_nsec - from.tv_nsec)) / ((double)PIXELS * TURNS);
     }
@@ -103,8 +106,8 @@ static void fill(int n)
 {
     static const int32_t position[3][2] = {{0, 0}, {640 * 16, 0}, {0, 480 * 16}};
     static const uint32_t w[3] = {0x40000000, 0x40000000, 0x3f800000}; /* 2, 2, 1 */
-    places[n][0] = rand() % 640;
-    places[n][1] = rand() % (480 - places[n][0] * 3 / 4);
+    places[n][0] = rand() % (640 - STEP);
+    places[n][1] = rand() % (480 - (places[n][0] + STEP) * 3 / 4);
     if (n > 0) return;
     struct ninebit_vertex vertex[3];
     memset(vertex, 0, sizeof vertex);
@@ -119,12 +122,21 @@ static void fill(int n)
 static uint32_t pixel(int n)
 {
     const uint32_t *const texture[4] = {memory, memory, memory, memory};
-    uint32_t word = 0, depth = 0;
-    return ninebit_draw0(&triangle, texture, places[n][0], places[n][1], &word, &depth) ? word : 0;
+    uint32_t words[STEP] = {0}, depths[STEP] = {0}, sum = 0;
+    if (STEP == 1) {
+        ninebit_draw0(&triangle, texture, places[n][0], places[n][1], words, depths);
+    } else {
+        ninebit_draw0_row(&triangle, texture, places[n][0], places[n][1], STEP, words, depths);
+    }
+    for (int k = 0; k < STEP; k++) sum += words[k];
+    return sum;
 }
 END
     cc -std=c99 -O2 -o "$work/bench" "$work/bench.c"
     printf '; whole: '
+    "$work/bench"
+    cc -std=c99 -O2 -DSTEP=8 -o "$work/bench" "$work/bench.c"
+    printf '; rows: '
     "$work/bench"
     printf '\n'
 done

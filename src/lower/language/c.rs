@@ -327,4 +327,39 @@ impl whole::WholeSyntax for C99 {
              static inline void {name}_set_up(const struct ninebit_vertex vertex[3], struct ninebit_triangle *triangle)\n{{\n{statements}}}\n"
         )
     }
+
+    /// A processor waits for the weights of a pixel, which are a chain of some forty operations. With the lines of two pixels in turn it has enough to
+    /// do meanwhile.
+    fn row(&self, draw: &Draw<'_>) -> String {
+        const NEXT: &str = "_next";
+        let (name, inputs) = (&draw.name, draw.function.inputs());
+        let Result::Pixel { word, depth, test } = draw.function.result else { return String::new() };
+        let mut out = format!(
+            "\n/* The same of `count` pixels of a row, two at a time: (x, y) is the first. */\n\
+             static inline void {name}_row(const struct ninebit_triangle *triangle, const uint32_t *const texture[4], int32_t x, int32_t y,\n    \
+             int32_t count, uint32_t *word, uint32_t *depth)\n{{\n    \
+             for (; count > 1; count -= 2, x += 2, word += 2, depth += 2) {{\n"
+        );
+        if inputs.contains(&Input::X) {
+            out += &format!("        const int32_t x{NEXT} = x + 1;\n");
+        }
+        for (input, of) in [(Input::Held, "word"), (Input::Depth, "depth")] {
+            if inputs.contains(&input) {
+                out += &format!("        const uint32_t held_{of} = {of}[0], held_{of}{NEXT} = {of}[1];\n");
+            }
+        }
+        let bodies = ["", NEXT].map(|suffix| Body::of_function(&C99, draw.function, suffix));
+        for (first, next) in bodies[0].declarations.iter().zip(&bodies[1].declarations) {
+            let next = next.split(" /* ").next().unwrap_or_default();
+            out += &format!("        {first}\n        {next}\n");
+        }
+        for (n, body) in bodies.iter().enumerate() {
+            if let Some(depth) = depth {
+                out += &format!("        depth[{n}] = {};\n", body.operand(depth, Kind::Word).open());
+            }
+            let test = test.map(|test| format!("if ({}) ", body.test(test))).unwrap_or_default();
+            out += &format!("        {test}word[{n}] = {};\n", body.operand(word, Kind::Word).open());
+        }
+        out + &format!("    }}\n    if (count > 0) (void){name}(triangle, texture, x, y, word, depth);\n}}\n")
+    }
 }

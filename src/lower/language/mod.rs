@@ -142,15 +142,7 @@ pub(crate) trait Syntax {
 
 /// Prints a whole function.
 fn function(syntax: &'static dyn Syntax, named: &NamedFunction<'_>) -> String {
-    let (lines, result) = (&named.function.lines, named.function.result);
-    let test = match result {
-        Result::Stored { test: Some(Test(_, operands)), .. } | Result::Pixel { test: Some(Test(_, operands)), .. } => {
-            operands.to_vec()
-        }
-        _ => Vec::new(),
-    };
-    let longest = if matches!(result, Result::Pixel { .. }) { whole::LONGEST } else { usize::MAX };
-    let body = Body::within(longest, syntax, lines, (&result.operands(), &test));
+    let (body, result) = (Body::of_function(syntax, named.function, ""), named.function.result);
     let lines = body.printed();
     let end = match result {
         Result::Fragment(channels) => syntax.fragment(body.open(channels, Kind::Number)),
@@ -204,9 +196,10 @@ pub(crate) enum Text {
 }
 
 impl Text {
-    fn length(&self) -> usize {
+    fn length_without(&self, suffix: &str) -> usize {
         match self {
-            Text::Term(text) | Text::Open(text) => text.len(),
+            Text::Term(text) | Text::Open(text) if suffix.is_empty() => text.len(),
+            Text::Term(text) | Text::Open(text) => text.replace(suffix, "").len(),
         }
     }
 
@@ -229,6 +222,8 @@ pub(crate) struct Body<'f> {
     /// Declarations in order.
     pub(crate) declarations: Vec<String>,
     syntax: &'static dyn Syntax,
+    /// What names end with, those of the pixel's inputs too.
+    suffix: &'static str,
     lines: &'f [Line],
     texts: Vec<(Text, BTreeSet<&'static str>)>,
 }
@@ -249,6 +244,27 @@ impl<'f> Body<'f> {
         longest: usize,
         syntax: &'static dyn Syntax,
         lines: &'f [Line],
+        used: (&[Operand], &[Operand]),
+    ) -> Body<'f> {
+        Body::with_suffix(longest, (syntax, ""), lines, used)
+    }
+
+    /// Prints the lines of a function, with a suffix of all names.
+    fn of_function(syntax: &'static dyn Syntax, function: &'f Function, suffix: &'static str) -> Body<'f> {
+        let result = function.result;
+        let test = match result {
+            Result::Stored { test: Some(Test(_, operands)), .. }
+            | Result::Pixel { test: Some(Test(_, operands)), .. } => operands.to_vec(),
+            _ => Vec::new(),
+        };
+        let longest = if matches!(result, Result::Pixel { .. }) { whole::LONGEST } else { usize::MAX };
+        Body::with_suffix(longest, (syntax, suffix), &function.lines, (&result.operands(), &test))
+    }
+
+    fn with_suffix(
+        longest: usize,
+        (syntax, suffix): (&'static dyn Syntax, &'static str),
+        lines: &'f [Line],
         (results, test): (&[Operand], &[Operand]),
     ) -> Body<'f> {
         let mut uses = vec![0; lines.len()];
@@ -262,12 +278,13 @@ impl<'f> Body<'f> {
         let mut named = vec![false; lines.len()];
         let compared = compared.chain(test.iter().copied()).filter_map(Operand::line);
         compared.for_each(|line| named[line] = syntax.compares_names());
-        let mut body = Body { declarations: Vec::new(), syntax, lines, texts: Vec::with_capacity(lines.len()) };
+        let mut body = Body { declarations: Vec::new(), syntax, suffix, lines, texts: Vec::with_capacity(lines.len()) };
         let (mut names, mut unnamed) = (BTreeSet::new(), 0);
         for (n, line) in lines.iter().enumerate() {
             let (text, mut rules) = body.text(line);
             let is_input = matches!(line.operation, Operation::Input(_));
-            let is_short = text.length() <= longest;
+            // Lines are the same with any suffix.
+            let is_short = text.length_without(suffix) <= longest;
             if is_input || (line.name.is_none() && uses[n] < 2 && !named[n] && is_short) {
                 body.texts.push((text, rules));
                 continue;
@@ -283,6 +300,7 @@ impl<'f> Body<'f> {
                 nth += 1;
                 name = format!("{stem}_{nth}");
             }
+            name += suffix;
             rules.remove("");
             let rules: Vec<&str> = rules.into_iter().collect();
             let range = match line.operation.kind() {
@@ -362,7 +380,10 @@ impl<'f> Body<'f> {
             return (text, rules);
         }
         let text = match operation {
-            Operation::Input(input) => return (Text::Term(syntax.input(input)), BTreeSet::new()),
+            Operation::Input(input) => {
+                let suffix = if matches!(input, Input::X | Input::Held | Input::Depth) { self.suffix } else { "" };
+                return (Text::Term(syntax.input(input) + suffix), BTreeSet::new());
+            }
             Operation::Add(a, b) => infix(self.summand(a, true), "+", self.summand(b, false)),
             Operation::Subtract(a, b) => infix(self.summand(a, true), "-", self.summand(b, false)),
             Operation::Multiply(a, b) | Operation::Times(a, b) => infix(term(a), "*", term(b)),

@@ -42,6 +42,10 @@ pub(crate) trait WholeSyntax: Syntax {
     fn setup(&self, _draw: &Draw<'_>) -> String {
         String::new()
     }
+    /// Prints a function that draws pixels of a row; nothing where processors draw them in parallel.
+    fn row(&self, _draw: &Draw<'_>) -> String {
+        String::new()
+    }
 }
 
 impl Language {
@@ -57,6 +61,7 @@ impl Language {
             out.push('\n');
             let named = NamedFunction { name: draw.name.clone(), about: draw.about.clone(), function: draw.function };
             out.push_str(&function(syntax, &named));
+            out.push_str(&whole.row(draw));
         }
         Some(out)
     }

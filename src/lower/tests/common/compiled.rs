@@ -20,7 +20,7 @@ use crate::setting::{bytes, compiler, run};
 /// Number of words of a vertex of the printed structure.
 const VERTEX: usize = 29;
 
-/// A program that draws what it reads by SET_UP, COVERS and DRAW; BEGIN_DRAW reads the state of a draw.
+/// A program that draws what it reads by SET_UP, COVERS and DRAW, which takes pixels of a row; BEGIN_DRAW reads the state of a draw.
 pub const MAIN: &str = r#"
 #include <stdio.h>
 #include <stdlib.h>
@@ -89,11 +89,11 @@ int main(int count, char **names)
             }
             for (uint32_t spans = next(); spans > 0; spans--) {
                 const uint32_t y = next(), from = next(), to = next();
+                const uint32_t at = y * width[target] + from;
                 for (uint32_t x = from; x < to; x++) {
-                    uint32_t *const word = words[target] + y * width[target] + x, *const depth = depths[target] + y * width[target] + x;
                     if (!is_stroke && !COVERS(&triangle, (int32_t)x, (int32_t)y)) return 4;
-                    DRAW(n, &triangle, texture, (int32_t)x, (int32_t)y, word, depth);
                 }
+                DRAW(n, &triangle, texture, (int32_t)from, (int32_t)y, (int32_t)(to - from), words[target] + at, depths[target] + at);
             }
         }
     }
@@ -115,12 +115,12 @@ impl Printed<'_> {
         let _ = write!(
             text,
             "typedef void set_up(const struct ninebit_vertex *, struct ninebit_triangle *);\n\
-             typedef int pixel(const struct ninebit_triangle *, const uint32_t *const *, int32_t, int32_t, uint32_t *, uint32_t *);\n\
-             static set_up *const set_ups[] = {{{}}};\nstatic pixel *const draw_pixel[] = {{{}}};\n\
+             typedef void row(const struct ninebit_triangle *, const uint32_t *const *, int32_t, int32_t, int32_t, uint32_t *, uint32_t *);\n\
+             static set_up *const set_ups[] = {{{}}};\nstatic row *const draw_row[] = {{{}}};\n\
              #define BEGIN_DRAW (void)0\n#define SET_UP(n, vertex, triangle) set_ups[n](vertex, triangle)\n\
-             #define COVERS ninebit_covers\n#define DRAW(n, ...) draw_pixel[n](__VA_ARGS__)\n{MAIN}",
+             #define COVERS ninebit_covers\n#define DRAW(n, ...) draw_row[n](__VA_ARGS__)\n{MAIN}",
             list(&|n| format!("draw{n}_set_up")),
-            list(&|n| format!("draw{n}")),
+            list(&|n| format!("draw{n}_row")),
         );
         text
     }

@@ -37,7 +37,8 @@ static void read_state(void)
 #define BEGIN_DRAW read_state()
 #define SET_UP(n, vertex, triangle) nb_set_up(&state, vertex, triangle)
 #define COVERS nb_covers
-#define DRAW(n, ...) nb_draw_pixel(&state, __VA_ARGS__)
+#define DRAW(n, triangle, texture, x, y, count, words, depths) \\
+    for (int32_t k = 0; k < (count); k++) nb_draw_pixel(&state, triangle, texture, (x) + k, y, (words) + k, (depths) + k)
 ";
 
 /// Returns the compiled text.
