@@ -228,9 +228,14 @@ fn printed_glsl_compiles() {
     }
 }
 
+/// Returns whether a module of Python opens a driver.
+fn has_driver(module: &str) -> bool {
+    works(&python(), &["-c", &format!("import {module}, numpy")])
+}
+
 /// Draws every `step`th committed scene and a share of the random ones by a driver that a module of Python opens, where there is one.
 fn hold_by_driver(way: Way, module: &str, step: u64, share: u64, seed: u64) {
-    if works(&python(), &["-c", &format!("import {module}, numpy")]) {
+    if has_driver(module) {
         hold_committed(way, setting("NINEBIT_WHOLE_EVERY").unwrap_or(step) as usize);
         let count = setting("NINEBIT_WHOLE_SCENES").unwrap_or(200) / share;
         hold_random(way, setting("NINEBIT_WHOLE_SEED").unwrap_or(seed), count);
@@ -240,6 +245,15 @@ fn hold_by_driver(way: Way, module: &str, step: u64, share: u64, seed: u64) {
 #[test]
 fn printed_wgsl_draws_scenes() {
     hold_by_driver(Way::Wgsl, "wgpu", 40, 40, 43);
+}
+
+/// The sample has no cube map that is small enough.
+#[test]
+fn printed_wgsl_draws_cube_maps() {
+    if has_driver("wgpu") {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../vectors/scenes/silicon/t08-cube-map.ron");
+        hold(&load(&path).unwrap(), Policies::DEFAULT, (Way::Wgsl, &mut Programs::default()), "cube map").unwrap();
+    }
 }
 
 #[test]
