@@ -115,16 +115,32 @@ fn shape(topology: Topology, places: &[[f32; 2]], [x, y]: [f32; 2]) -> Draw {
     draw(topology, places.iter().zip(COLORS.into_iter().cycle()).map(colored).collect())
 }
 
-/// Adds the frame of Smoothing_control in which the chip smooths nothing, whatever is enabled.
+/// Adds the frames of Smoothing_control: four times the same shapes, with smooth lines in the right half and smooth polygons in the lower one, which a
+/// register's first bit forbids.
 pub(super) fn smoothing(frames: &mut Frames) {
-    frames.paint("0xFFFF0001", 0xff32_343a, |canvas| {
-        for origin in places([0.0; 2], [320.0, 240.0], 2).take(4) {
-            // Line_width's last shape does not occur.
-            for (topology, places) in &SHAPES[..6] {
-                canvas.draw(shape(*topology, places, origin));
+    for (name, allowed) in [("0xFFFF0000", true), ("0xFFFF0001", false)] {
+        frames.paint(name, 0xff32_343a, move |canvas| {
+            for origin in places([0.0; 2], [320.0, 240.0], 2).take(4) {
+                // Line_width's last shape does not occur.
+                for (topology, places) in &SHAPES[..6] {
+                    let shape = shape(*topology, places, origin);
+                    let [right, low] = origin.map(|n| n > 0.0);
+                    let is_smooth = if topology.has_faces() { low } else { right && *topology != Topology::Points };
+                    canvas.draw(match allowed {
+                        true if is_smooth => smooth::smooth(shape),
+                        true => thin(shape),
+                        false => shape,
+                    });
+                }
             }
-        }
-    });
+        });
+    }
+}
+
+/// Returns the draw with thin lines and points.
+pub(super) fn thin(draw: Draw) -> Draw {
+    let lines = Lines { rasterization: LineRasterization::Bresenham, ..draw.lines };
+    Draw { lines, point_rasterization: PointRasterization::Thin, ..draw }
 }
 
 /// The shapes that Edge_flag draws a second time, with flags that change from vertex to vertex: whether the first vertex has one.

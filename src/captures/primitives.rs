@@ -325,8 +325,7 @@ const SOLIDS: [Shape; 10] = [
 pub(super) fn solids() -> impl Iterator<Item = (&'static str, Draw)> {
     SOLIDS.into_iter().map(|(name, topology, vertices)| {
         let depth_test = Some(in_steps(CompareFunction::Less, true, None));
-        let lines = Lines { rasterization: LineRasterization::Bresenham, ..Lines::default() };
-        (name, Draw { depth_test, lines, ..draw(topology, vertices.iter().map(solid).collect()) })
+        (name, Draw { depth_test, ..lines::thin(draw(topology, vertices.iter().map(solid).collect())) })
     })
 }
 

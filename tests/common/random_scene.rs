@@ -318,6 +318,7 @@ fn draw(c: &mut Choices<'_>, given: &SceneParts<'_>, n: u32) -> Draw {
         lines: Lines::default(),
         point_size: 8,
         point_sizes: None,
+        point_rasterization: PointRasterization::Rectangular,
         point_sprite: false,
         scissor: c.once_in(5).then(|| Rectangle {
             x: c.below(surface.width.div_ceil(2)),

@@ -53,6 +53,8 @@ pub fn stroke(c: &mut Choices<'_>, (profile, textures): (Profile, &[Texture]), d
         send_away(draw);
     }
     draw.point_sprite = c.once_in(2) && profile == Profile::Nv2a && can_be_sprite(textures, draw);
+    let is_thin = !draw.point_sprite && draw.blend_constant[1] % 2 == 1;
+    draw.point_rasterization = if is_thin { PointRasterization::Thin } else { PointRasterization::Rectangular };
     (draw.lines, draw.point_size) = (Lines { width: size(c), rasterization: c.any() }, size(c));
     if c.once_in(3) {
         draw.point_sizes = Some((0..draw.vertices.len()).map(|_| size(&mut c.part(4))).collect());

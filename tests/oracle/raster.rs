@@ -327,7 +327,7 @@ impl Setup {
         // INT-6: nv10 keeps sixteen bits.
         let w = vertices.map(|v| Number::of(v.position[3]).cut(if profile == Profile::Nv10 { 16 } else { 24 }));
         let w = draw.perspective.then_some(w);
-        let strokes = Strokes { lines: draw.lines, point_size };
+        let strokes = Strokes { lines: draw.lines, point_size, points: draw.point_rasterization };
         let smooth_lines = draw.lines.rasterization == LineRasterization::RectangularSmooth;
         let is_smooth = if kind == Kind::Triangle { draw.smooth_polygons } else { kind == Kind::Line && smooth_lines };
         Some(Setup { vertices, kind, strokes, is_smooth, snapped, area: cross.abs(), turn: cross.signum(), w })

@@ -1,7 +1,8 @@
 //! Lines, points and patterns, pixel by pixel: LIN-1, LIN-2, PNT-1, POL-1, STP-1; the samples of smooth edges: SMO-1.
 
 use ninebit::state::{
-    Cull, Draw, FrontFace, LineRasterization, Lines, PolygonMode, PolygonModes, ProvokingVertex, Topology,
+    Cull, Draw, FrontFace, LineRasterization, Lines, PointRasterization, PolygonMode, PolygonModes, ProvokingVertex,
+    Topology,
 };
 
 /// What a draw draws, with vertices in clip or window space.
@@ -18,6 +19,7 @@ pub enum Kind {
 pub struct Strokes {
     pub lines: Lines,
     pub point_size: u16,
+    pub points: PointRasterization,
 }
 
 /// Returns the positions in the index list of what a draw's lines or points have as vertices, and that of the provoking one.
@@ -101,7 +103,11 @@ pub fn samples(of: &Strokes, ends: [[i128; 2]; 2], pixel: [i128; 2]) -> usize {
 /// Returns the edge functions of a line or a point at a pixel, and whether it covers the pixel.
 pub fn edges(of: &Strokes, kind: Kind, ends: [[i128; 2]; 2], pixel: [i128; 2]) -> ([i128; 3], bool) {
     if kind == Kind::Point {
-        return ([0, 1, 0], point(of.point_size.into(), ends[0], pixel));
+        let covered = match of.points {
+            PointRasterization::Rectangular => point(of.point_size.into(), ends[0], pixel),
+            PointRasterization::Thin => thin_point(ends[0], pixel),
+        };
+        return ([0, 1, 0], covered);
     }
     match of.lines.rasterization {
         LineRasterization::Rectangular => wide(of.lines.width.into(), ends, pixel, CENTRE),
@@ -123,6 +129,10 @@ fn point(n: i128, at: [i128; 2], pixel: [i128; 2]) -> bool {
             _ => -n <= d && d <= n && (d < n || n.count_ones() > 1),
         }
     })
+}
+
+fn thin_point([x, y]: [i128; 2], [i, j]: [i128; 2]) -> bool {
+    (16 * i..16 * i + 16).contains(&x) && (16 * j + 1..=16 * j + 16).contains(&y)
 }
 
 fn wide(n: i128, [from, to]: [[i128; 2]; 2], pixel: [i128; 2], sample: [i128; 2]) -> ([i128; 3], bool) {

@@ -2,9 +2,9 @@
 
 use ninebit::state::{
     AlphaTest, Blend, BlendEquation, BlendFactor, CompareFunction, Cull, DepthFormat, DepthRange, DepthTest, Draw, Fog,
-    FogFunction, FogMode, FrontFace, LineRasterization, Lines, Named, PolygonMode, PolygonModes, PolygonOffset,
-    PolygonStipple, ProvokingVertex, Rectangle, ShadeModel, StencilOperation, StencilTest, Topology, VertexDepths,
-    WindowClip,
+    FogFunction, FogMode, FrontFace, LineRasterization, Lines, Named, PointRasterization, PolygonMode, PolygonModes,
+    PolygonOffset, PolygonStipple, ProvokingVertex, Rectangle, ShadeModel, StencilOperation, StencilTest, Topology,
+    VertexDepths, WindowClip,
 };
 use ninebit_program::registers::unit::{
     CLAMPS_DEPTH, CONVERSION, FOG_MODES, PERSPECTIVE, STENCIL_OPERATIONS, STENCIL_WRITE, W_BUFFER,
@@ -76,9 +76,14 @@ pub(crate) fn state(view: &mut View<'_>, depth: DepthFormat, draw: &mut Draw) ->
     visible
 }
 
-/// SMO-1: returns whether edges are smooth. The register's first bit forbids it.
+/// LIN-2, PNT-1, SMO-1: returns whether the register for smoothing has its first bit set. Then lines and points are rectangles, and nothing is smooth.
+fn has_rectangles(view: &mut View<'_>) -> bool {
+    view.get(class::SET_ANTI_ALIASING_CONTROL) & 1 != 0
+}
+
+/// Returns whether edges are smooth.
 fn smooths(view: &mut View<'_>, enable: u32) -> bool {
-    view.enabled(enable) && view.get(class::SET_ANTI_ALIASING_CONTROL) & 1 == 0
+    view.enabled(enable) && !has_rectangles(view)
 }
 
 fn figures(view: &mut View<'_>, draw: &mut Draw) {
@@ -105,8 +110,7 @@ fn figures(view: &mut View<'_>, draw: &mut Draw) {
     }
     if lines {
         let width = (view.get(class::SET_LINE_WIDTH) & 0x1ff) as u16;
-        // LIN-2.
-        let rectangles = view.get(class::SET_ANTI_ALIASING_CONTROL) & 1 != 0;
+        let rectangles = has_rectangles(view);
         let rasterization = match smooths(view, class::SET_LINE_SMOOTH_ENABLE) {
             true => LineRasterization::RectangularSmooth,
             false if rectangles => LineRasterization::Rectangular,
@@ -117,9 +121,15 @@ fn figures(view: &mut View<'_>, draw: &mut Draw) {
     if corners {
         draw.point_size = (view.get(class::SET_POINT_SIZE) & 0x1ff) as u16;
         let smooth = view.enabled(class::SET_POINT_SMOOTH_ENABLE);
-        // Sprites are Kelvin's; the bit made round points before.
+        // Sprites and thin points are Kelvin's; the bit of sprites made round points before.
         match view.family() {
-            Family::Kelvin => draw.point_sprite = smooth,
+            Family::Kelvin if has_rectangles(view) => draw.point_sprite = smooth,
+            Family::Kelvin => {
+                draw.point_rasterization = PointRasterization::Thin;
+                if smooth {
+                    view.note(Gap::NotModelled("sprites of one pixel".into()));
+                }
+            }
             Family::Celsius if smooth => view.note(Gap::NotModelled("smooth points".into())),
             Family::Celsius => {}
         }

@@ -2,8 +2,8 @@
 
 use ninebit::rop;
 use ninebit::state::{
-    Cull, DepthFormat, DepthRange, DepthTest, Draw, Fog, FrontFace, LineRasterization, PolygonMode, PolygonStipple,
-    ProvokingVertex, Rectangle, Scene, ShadeModel, StencilTest, Target, Topology,
+    Cull, DepthFormat, DepthRange, DepthTest, Draw, Fog, FrontFace, LineRasterization, PointRasterization, PolygonMode,
+    PolygonStipple, ProvokingVertex, Rectangle, Scene, ShadeModel, StencilTest, Target, Topology,
 };
 use ninebit_program::registers::unit::{
     CLAMPS_DEPTH, CONVERSION, FLOAT_DEPTH, FOG_MODES, PERSPECTIVE, STENCIL_OPERATIONS, STENCIL_WRITE, SURFACE_DEPTH,
@@ -141,27 +141,46 @@ fn figures(words: &mut Words, draw: &Draw) -> Result<(), ExportError> {
     words.set(class::SET_LINE_SMOOTH_ENABLE, smooth_lines.into());
     words.set(class::SET_POLY_SMOOTH_ENABLE, draw.smooth_polygons.into());
     words.set(class::SET_LINE_WIDTH, draw.lines.width.into());
-    // LIN-2, SMO-1: the first bit makes lines rectangles, and nothing smooth. Celsius has no such bit.
-    let modes = [draw.polygon_modes.front, draw.polygon_modes.back];
-    let lines = matches!(draw.topology, Topology::Lines | Topology::LineStrip | Topology::LineLoop);
-    let lines = lines || draw.topology.has_faces() && modes.contains(&PolygonMode::Line);
-    let rectangles = draw.lines.rasterization == LineRasterization::Rectangular;
-    let smooth_polygons = draw.smooth_polygons && draw.topology.has_faces();
-    if smooth_polygons && (lines && rectangles || modes.contains(&PolygonMode::Point)) {
-        return refuse("smooth polygons have no word beside points and `Rectangular` lines: take `RectangularSmooth`");
-    }
-    let sharp = u32::from(rectangles && !smooth_polygons);
-    match words.family {
-        Family::Kelvin => words.set(class::SET_ANTI_ALIASING_CONTROL, 0xffff_0000 | sharp),
-        Family::Celsius if lines || smooth_polygons => words.set(class::SET_ANTI_ALIASING_CONTROL, sharp),
-        Family::Celsius => {}
-    }
+    smoothing(words, draw)?;
     words.set(class::SET_POINT_SIZE, draw.point_size.into());
     words.set(class::SET_POINT_SMOOTH_ENABLE, draw.point_sprite.into());
     words.set(class::SET_POINT_PARAMS_ENABLE, draw.point_sizes.is_some().into());
     words.set(class::SET_FRONT_FACE, if draw.front_face == FrontFace::Clockwise { 0x900 } else { 0x901 });
     words.set(class::SET_CULL_FACE_ENABLE, (draw.cull != Cull::None).into());
     words.set(class::SET_CULL_FACE, if draw.cull == Cull::Front { 0x404 } else { 0x405 });
+    Ok(())
+}
+
+/// LIN-2, PNT-1, SMO-1: sets the register whose first bit makes lines and points rectangles, and nothing smooth. Celsius has no such bit: there it is
+/// clear for lines and polygons, and points have their sizes.
+fn smoothing(words: &mut Words, draw: &Draw) -> Result<(), ExportError> {
+    let faces = draw.topology.has_faces();
+    let modes = [draw.polygon_modes.front, draw.polygon_modes.back];
+    let lines = matches!(draw.topology, Topology::Lines | Topology::LineStrip | Topology::LineLoop);
+    let has_lines = lines || faces && modes.contains(&PolygonMode::Line);
+    let has_points = draw.topology == Topology::Points || faces && modes.contains(&PolygonMode::Point);
+    let squares = draw.point_rasterization == PointRasterization::Rectangular;
+    if words.family == Family::Celsius && has_points && !squares {
+        return refuse("thin points have no word of nv10: take `point_rasterization: Rectangular`");
+    }
+    let wanted = [
+        has_lines.then_some(draw.lines.rasterization == LineRasterization::Rectangular),
+        (has_points && words.family == Family::Kelvin).then_some(squares),
+        (faces && draw.smooth_polygons).then_some(false),
+    ];
+    let (rectangles, others) = [true, false].map(|bit| wanted.contains(&Some(bit))).into();
+    if rectangles && others {
+        return refuse(
+            "`Rectangular` lines and points have no word beside smooth polygons, thin points and other lines: take one kind",
+        );
+    }
+    match words.family {
+        Family::Kelvin => words.set(class::SET_ANTI_ALIASING_CONTROL, 0xffff_0000 | u32::from(!others)),
+        Family::Celsius if rectangles || others => {
+            words.set(class::SET_ANTI_ALIASING_CONTROL, rectangles.into());
+        }
+        Family::Celsius => {}
+    }
     Ok(())
 }
 

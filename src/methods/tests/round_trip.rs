@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use ninebit::engine::{RenderOptions, render};
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
-use ninebit::state::{PolygonMode, Profile, Scene};
+use ninebit::state::{PointRasterization, PolygonMode, Profile, Scene};
 use ninebit_methods::export::{Methods, export, push_buffer, trace};
 use ninebit_methods::import::{Options, import};
 use ninebit_methods::memory::Memory;
@@ -182,5 +182,11 @@ fn smooth_edges_come_back() {
     assert_eq!(Trip::new("smooth".into(), scene.clone(), true).result, Ok(None));
     // One register has the points sharp and the polygons smooth.
     scene.draws[0].polygon_modes.back = PolygonMode::Point;
-    assert!(Trip::new("points".into(), scene, true).result.is_err_and(|message| message.contains("smooth polygons")));
+    let sharp = Trip::new("points".into(), scene.clone(), true);
+    assert!(sharp.result.is_err_and(|message| message.contains("smooth polygons")));
+    scene.draws[0].point_rasterization = PointRasterization::Thin;
+    assert_eq!(Trip::new("thin points".into(), scene.clone(), true).result, Ok(None));
+    // Celsius has neither register nor thin points.
+    scene.profile = Profile::Nv10;
+    assert!(Trip::new("nv10".into(), scene, true).result.is_err_and(|message| message.contains("thin points")));
 }

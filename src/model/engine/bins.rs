@@ -125,7 +125,7 @@ mod tests {
     use crate::raster::assemble::{Clipping, Corner};
     use crate::raster::setup::centres;
     use crate::raster::triangles::Triangles;
-    use crate::state::{Lines, ProvokingVertex, Topology, Vertices};
+    use crate::state::{Lines, PointRasterization, ProvokingVertex, Topology, Vertices};
     use std::sync::Arc;
 
     fn triangles(count: u32) -> Assembly {
@@ -137,16 +137,16 @@ mod tests {
         let indices: Arc<[u32]> = (0..3 * count).collect();
         let triangles = Triangles::split(&indices, Topology::Triangles, ProvokingVertex::First);
         let (vertices, clipping, lines) = (Vertices::default(), Clipping::default(), Lines::default());
-        let smooth_polygons = false;
         Assembly {
             vertices,
             corners,
             triangles,
             clipping,
-            smooth_polygons,
+            smooth_polygons: false,
             lines,
             point_size: 8,
             point_sizes: None,
+            point_rasterization: PointRasterization::Rectangular,
             is_far: false,
         }
     }

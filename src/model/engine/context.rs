@@ -131,7 +131,10 @@ impl<'a> TriangleContext<'a> {
                 }
             }
             Figure::Line => self.triangle.place_line([[x[1], y[1]], [x[2], y[2]]], draw.assembly.lines),
-            Figure::Point => self.triangle.place_point([x[1], y[1]], draw.assembly.size_of(number)),
+            Figure::Point => {
+                let size = draw.assembly.size_of(number);
+                self.triangle.place_point([x[1], y[1]], size, draw.assembly.point_rasterization);
+            }
         }
         if let Some(test) = &draw.depth_test {
             let (z, w) = (self.vertices().position(2), test.w_buffer.then(|| self.vertices().position(3)));

@@ -10,7 +10,8 @@ pub(crate) use super::triangles::{IndexedTriangle, Triangles};
 use super::{FAR_GUARD, FARTHEST_W, LARGEST_W, SMALLEST_W, modes, project};
 use crate::number::convert::{snap, vertex_color};
 use crate::state::{
-    Draw, LineRasterization, Lines, PolygonModes, Positions, TriangleVertices, Vertex, VertexColor, Vertices, Viewport,
+    Draw, LineRasterization, Lines, PointRasterization, PolygonModes, Positions, TriangleVertices, Vertex, VertexColor,
+    Vertices, Viewport,
 };
 
 /// The values of a vertex that triangle set-up reads, converted as on the chip.
@@ -46,6 +47,8 @@ pub struct Assembly {
     pub point_size: u16,
     /// Size of the point at each vertex of the draw, in place of that.
     pub point_sizes: Option<Arc<[u16]>>,
+    /// How points become pixels.
+    pub point_rasterization: PointRasterization,
     /// Whether a vertex lies behind the eye (RAS-8), or outside of the limits for all figures (RAS-0).
     pub is_far: bool,
 }
@@ -99,7 +102,7 @@ impl Assembly {
                 if self.smooth_polygons { smooth::widened(centres) } else { centres }
             }
             Figure::Line => stroke::line_box([all[1], all[2]], self.lines)[axis],
-            Figure::Point => stroke::point_box(all[1], self.size_of(number))[axis],
+            Figure::Point => stroke::point_box(all[1], self.size_of(number), self.point_rasterization)[axis],
         }
     }
 
@@ -260,9 +263,20 @@ fn finish(
         vertices.map_positions(limit_w);
     }
     let corners = used.iter().enumerate().map(|(v, used)| corner(&vertices, v, *used)).collect();
-    let Draw { smooth_polygons, lines, point_size, .. } = *draw;
+    let Draw { smooth_polygons, lines, point_size, point_rasterization, .. } = *draw;
     let point_sizes = draw.point_sizes.clone();
-    Ok(Assembly { vertices, corners, triangles, clipping, smooth_polygons, lines, point_size, point_sizes, is_far })
+    Ok(Assembly {
+        vertices,
+        corners,
+        triangles,
+        clipping,
+        smooth_polygons,
+        lines,
+        point_size,
+        point_sizes,
+        point_rasterization,
+        is_far,
+    })
 }
 
 fn corner(vertices: &Vertices, index: usize, used: bool) -> Corner {

@@ -6,7 +6,7 @@
 use super::GUARD;
 use super::setup::Triangle;
 use crate::number::Integer;
-use crate::state::{CompareFunction, LineRasterization, Lines, PolygonStipple, named};
+use crate::state::{CompareFunction, LineRasterization, Lines, PointRasterization, PolygonStipple, named};
 
 named! {
     /// What a draw consists of.
@@ -59,7 +59,12 @@ fn is_x_major(from: [i64; 2], to: [i64; 2]) -> bool {
 }
 
 /// PNT-1: returns the columns and rows that a point of some size in 1/8 pixel covers.
-pub(crate) fn point_box(at: [i64; 2], size: u16) -> [Range; 2] {
+pub(crate) fn point_box(at: [i64; 2], size: u16, rasterization: PointRasterization) -> [Range; 2] {
+    if rasterization == PointRasterization::Thin {
+        // As along the minor axis of LIN-2: a pixel has its left and its lower edge.
+        let [column, row] = [at[0] >> 4, (at[1] - 1) >> 4];
+        return [(column, column + 1), (row, row + 1)];
+    }
     let half = i64::from(size);
     at.map(|at| match half {
         0 => (at >> 4, (at >> 4) + 1),
@@ -109,9 +114,9 @@ impl Triangle {
     }
 
     /// Returns a point at a position in 1/16 pixel, below 2^16 in magnitude, of a size in 1/8 pixel.
-    pub fn point(at: [i64; 2], size: u16) -> Triangle {
+    pub fn point(at: [i64; 2], size: u16, rasterization: PointRasterization) -> Triangle {
         let mut point = Triangle::default();
-        point.place_point(at, size);
+        point.place_point(at, size, rasterization);
         point
     }
 
@@ -153,9 +158,9 @@ impl Triangle {
     }
 
     /// Sets all fields that do not depend on w to those of a point.
-    pub(crate) fn place_point(&mut self, at: [i64; 2], size: u16) {
+    pub(crate) fn place_point(&mut self, at: [i64; 2], size: u16, rasterization: PointRasterization) {
         debug_assert!(at.iter().all(|n| n.abs() < GUARD));
-        self.stroke(Figure::Point, [ANYWHERE, [0, 0, 1], ANYWHERE], point_box(at, size));
+        self.stroke(Figure::Point, [ANYWHERE, [0, 0, 1], ANYWHERE], point_box(at, size, rasterization));
         (self.doubled_area, self.sides) = (1, [ANYWHERE; 4]);
     }
 
@@ -240,11 +245,17 @@ mod tests {
 
     #[test]
     fn points_as_captured() {
-        let columns = |size| point_box([404 * 16, 8], size)[0];
+        use PointRasterization::{Rectangular, Thin};
+        let columns = |size| point_box([404 * 16, 8], size, Rectangular)[0];
         assert_eq!([columns(24), columns(32), columns(8)], [(402, 406), (402, 406), (403, 404)]);
         let (first, end) = columns(4);
         assert!(first >= end);
         assert_eq!(columns(0), (404, 405));
+        for size in [0, 8, 511] {
+            assert_eq!(point_box([6464, 6464], size, Thin), [(404, 405), (403, 404)]);
+            assert_eq!(point_box([6479, 6465], size, Thin), [(404, 405), (404, 405)]);
+            assert_eq!(point_box([-1, 0], size, Thin), [(-1, 0), (-1, 0)]);
+        }
     }
 
     /// A line covers what is within its limits, one by one, and nothing outside of its box; thin ones one pixel for each step.

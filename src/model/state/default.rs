@@ -53,6 +53,7 @@ impl Default for Draw {
             lines: Lines::default(),
             point_size: 8,
             point_sizes: None,
+            point_rasterization: PointRasterization::Rectangular,
             point_sprite: false,
             scissor: None,
             window_clip: None,

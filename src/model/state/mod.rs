@@ -29,9 +29,9 @@ pub use policy::{
     Policies, Policy, PolicyError, RegisterFloor, SumRounding,
 };
 pub use primitive::{
-    ClipDepth, Cull, Fog, FogFunction, FogMode, FrontFace, LARGEST_SIZE, LineRasterization, Lines, PolygonMode,
-    PolygonModes, PolygonStipple, Positions, ProvokingVertex, Rectangle, SPRITE_UNIT, ShadeModel, Topology, Vertex,
-    VertexColor, VertexProgram, Viewport,
+    ClipDepth, Cull, Fog, FogFunction, FogMode, FrontFace, LARGEST_SIZE, LineRasterization, Lines, PointRasterization,
+    PolygonMode, PolygonModes, PolygonStipple, Positions, ProvokingVertex, Rectangle, SPRITE_UNIT, ShadeModel,
+    Topology, Vertex, VertexColor, VertexProgram, Viewport,
 };
 pub use rop::{
     AlphaTest, Blend, BlendEquation, BlendFactor, Buffer, CompareFunction, DepthBuffer, DepthFormat, DepthRange,
@@ -134,6 +134,8 @@ pub struct Draw {
     pub point_size: u16,
     /// Size of the point at each vertex, in place of `point_size` (PNT-3).
     pub point_sizes: Option<Arc<[u16]>>,
+    /// How points become pixels.
+    pub point_rasterization: PointRasterization,
     /// Whether unit 3 takes s and t of a point from the pixel's place in it (PNT-2, nv2a).
     pub point_sprite: bool,
     /// Scissor rectangle: pixels outside are not drawn. `None` means the whole target.

@@ -56,6 +56,16 @@ pub struct Lines {
     pub rasterization: LineRasterization,
 }
 
+named! {
+    /// How points become pixels (PNT-1).
+    pub enum PointRasterization {
+        /// A square as wide as the point.
+        Rectangular,
+        /// One pixel, whatever the size.
+        Thin,
+    }
+}
+
 /// Largest width of a line and largest size of a point, in 1/8 pixel: the registers have nine bits.
 pub const LARGEST_SIZE: u16 = 0x1ff;
 

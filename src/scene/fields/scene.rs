@@ -5,8 +5,8 @@ use crate::generate::{SIDES, hemisphere, normal_map};
 use crate::truth::{self, LARGEST_EXPONENT};
 use crate::vertex_column::VertexColumn;
 use ninebit::state::{
-    BlendEquation, BlendFactor, CompareFunction, Cull, FrontFace, LARGEST_SIZE, LineRasterization, PolygonMode,
-    ProvokingVertex, ShadeModel, StencilOperation, SurfaceFormat, Topology, VertexDepths,
+    BlendEquation, BlendFactor, CompareFunction, Cull, FrontFace, LARGEST_SIZE, LineRasterization, PointRasterization,
+    PolygonMode, ProvokingVertex, ShadeModel, StencilOperation, SurfaceFormat, Topology, VertexDepths,
 };
 use std::ops::RangeInclusive;
 
@@ -255,6 +255,8 @@ source! {
         line_rasterization: Name<state::LineRasterization> = LineRasterization::Rectangular,
         /// size of points in 1/8 pixel (PNT-1)
         point_size: u32 [in SIZES, "a point size", rule("PNT-1"), help(NINE_BITS)] = 8,
+        /// how points become pixels: squares, or one pixel each, whatever the size (PNT-1)
+        point_rasterization: Name<state::PointRasterization> = PointRasterization::Rectangular,
         /// [the size of each point](#point-parameters) by its distance from the viewer, or the vertex program's oPts.x in pixels (PNT-3)
         point_parameters: PointParameters<'a> [or "`point_size`"],
         /// Nv2a only: over each point s and t of unit 3 run from 0 to 1 (PNT-2)

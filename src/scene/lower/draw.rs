@@ -133,6 +133,7 @@ fn draw<'a>(
         lines: lines(reader, fields),
         // Nine bits.
         point_size: fields.point_size(reader) as u16,
+        point_rasterization: fields.point_rasterization(reader),
         point_sprite: sprite(reader, fields),
         convert_yuv: conversion(reader, fields),
         scissor: scissor(reader, target, fields),

@@ -151,6 +151,7 @@ fn primitives(fields: &mut Fields, draw: &Draw) {
     fields.whole("line_width", draw.lines.width, default.lines.width.into());
     fields.word("line_rasterization", draw.lines.rasterization, default.lines.rasterization);
     fields.whole("point_size", draw.point_size, default.point_size.into());
+    fields.word("point_rasterization", draw.point_rasterization, default.point_rasterization);
     fields.flag("point_sprite", draw.point_sprite, default.point_sprite);
 }
 

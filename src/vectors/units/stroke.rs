@@ -10,7 +10,9 @@ use ninebit::raster::modes::outer_edges;
 use ninebit::raster::setup::Triangle;
 use ninebit::raster::stroke::{sprite_coordinate, stipples};
 use ninebit::raster::triangles::Triangles;
-use ninebit::state::{DepthFormat, LineRasterization, Lines, Named, PolygonStipple, Profile, ProvokingVertex};
+use ninebit::state::{
+    DepthFormat, LineRasterization, Lines, Named, PointRasterization, PolygonStipple, Profile, ProvokingVertex,
+};
 use ninebit::vertex::point::PointParameters;
 
 /// Largest position, 1/16 pixel.
@@ -165,35 +167,44 @@ impl Unit for PointCoverage {
     known_as!(
         "point-coverage", &["PNT-1"],
         "whether a point of a size in 1/8 pixel at a snapped position (1/16 pixel) covers a pixel", Geometry;
-        takes [positions(["in.x", "in.y"]), [Column::unsigned("in.size", 9, 511)], pixel()];
+        takes [
+            [Column::choice::<PointRasterization>("cfg.rasterization")],
+            positions(["in.x", "in.y"]),
+            [Column::unsigned("in.size", 9, 511)],
+            pixel(),
+        ];
         gives [Column::result("out.covered", Kind::Unsigned(1))]
     );
 
     fn regressions(&self) -> Vec<Vec<i64>> {
         let sizes = [24, 32, 8, 4, 0, 1, 511, 512 - 256];
         let places = [(6464, 6472), (6471, 6465)];
-        let row = |(x, y): (i64, i64), size: i64, column: i64| vec![x, y, size, 402 + column, 404];
+        let row = |(x, y): (i64, i64), size: i64, column: i64| vec![0, x, y, size, 402 + column, 404];
         let of = |size: i64| places.into_iter().flat_map(move |at| (-1..5).map(move |column| row(at, size, column)));
-        sizes.into_iter().flat_map(of).collect()
+        // Thin ones on corners, edges and insides of pixels.
+        let corners = [(6464, 6464), (6464, 6470), (6470, 6464), (6470, 6470)];
+        let thin = |(x, y): (i64, i64)| (0..9).map(move |n| vec![1, x, y, 8, 403 + n % 3, 403 + n / 3]);
+        sizes.into_iter().flat_map(of).chain(corners.into_iter().flat_map(thin)).collect()
     }
 
     fn fit(&self, inputs: &mut [i64]) {
-        if inputs[2] % 4 != 0 {
-            inputs[2] %= 80;
+        if inputs[3] % 4 != 0 {
+            inputs[3] %= 80;
         }
-        let (point, pixel) = inputs.split_at_mut(3);
+        let (point, pixel) = inputs.split_at_mut(4);
         // Usually near an edge.
-        let reach = point[2] / 16 + 1;
+        let reach = if point[0] == 0 { point[3] / 16 + 1 } else { 0 };
         for axis in 0..2 {
-            let centre = point[axis] / 16;
+            let centre = point[1 + axis] / 16;
             let beside = [centre - reach, centre + reach, centre][(pixel[axis] % 3) as usize];
             pixel[axis] = (beside + pixel[axis] / 3 % 3 - 1).clamp(0, 640);
         }
     }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
-        let point = Triangle::point([inputs[0], inputs[1]], inputs[2] as u16);
-        results[0] = point.contains(inputs[3], inputs[4]).into();
+        let rasterization = named::<PointRasterization>(inputs[0]);
+        let point = Triangle::point([inputs[1], inputs[2]], inputs[3] as u16, rasterization);
+        results[0] = point.contains(inputs[4], inputs[5]).into();
     }
 }
 

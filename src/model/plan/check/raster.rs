@@ -21,6 +21,11 @@ impl Check<'_> {
                 "let it sample a texture of two dimensions, without cylindrical wrap; or take `point_sprite: false`";
             self.refuse("NB0402", "PNT-2", message, help);
         }
+        if draw.point_sprite && draw.point_rasterization == PointRasterization::Thin {
+            let message = "it is not known which coordinates a sprite of one pixel has";
+            let help = "take `point_rasterization: Rectangular`, or `point_sprite: false`";
+            self.refuse("NB0402", "PNT-2", message, help);
+        }
     }
 
     /// Checks widths of lines, sizes of points, and sprites.
