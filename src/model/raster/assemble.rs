@@ -7,7 +7,7 @@ use super::setup::{EVERYWHERE, centres};
 use super::smooth;
 use super::stroke::{self, Figure};
 pub(crate) use super::triangles::{IndexedTriangle, Triangles};
-use super::{FAR_GUARD, FARTHEST_W, LARGEST_W, SMALLEST_W, modes, project};
+use super::{FAR_GUARD, FARTHEST_W, LARGEST_W, NEAREST_W, SMALLEST_W, modes, project};
 use crate::number::convert::{snap, vertex_color};
 use crate::state::{
     Draw, LineRasterization, Lines, PointRasterization, PolygonModes, Positions, TriangleVertices, Vertex, VertexColor,
@@ -311,13 +311,13 @@ fn may_be_far(draw: &Draw, triangles: &Triangles) -> bool {
 
 /// Returns whether a window position is within RAS-0 for filled triangles. Those behind the eye need perspective (RAS-8).
 fn in_far_range([x, y, z, w]: [f32; 4], perspective: bool) -> bool {
-    let in_guard = |n: f32| n.abs() * 16.0 < FAR_GUARD as f32;
+    let in_guard = |n: f32| n.abs() < (FAR_GUARD / 16) as f32;
     z.is_finite() && in_guard(x) && in_guard(y) && !w.is_nan() && (perspective || w.is_sign_positive())
 }
 
 /// RAS-8: limits the magnitude of w.
 fn limit_w([x, y, z, w]: [f32; 4]) -> [f32; 4] {
-    [x, y, z, w.abs().clamp(1.0 / FARTHEST_W, FARTHEST_W).copysign(w)]
+    [x, y, z, w.abs().clamp(NEAREST_W, FARTHEST_W).copysign(w)]
 }
 
 /// Number of new vertices that are converted to columns at a time.

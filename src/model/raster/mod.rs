@@ -36,5 +36,7 @@ pub(crate) const SMALLEST_W: f32 = 1.0 / 1_048_576.0;
 pub(crate) const LARGEST_W: f32 = 1_048_576.0;
 /// RAS-0: limit of snapped coordinates of filled triangles in window coordinates: 2^20 pixels in units of 1/16 pixel.
 pub(crate) const FAR_GUARD: i64 = 1 << 24;
-/// RAS-8: largest magnitude of w. Its reciprocal is the smallest.
+/// RAS-8: largest magnitude of w, 2^64.
 pub(crate) const FARTHEST_W: f32 = 18_446_744_073_709_551_616.0;
+/// RAS-8: smallest magnitude of w, 2^-64.
+pub(crate) const NEAREST_W: f32 = 1.0 / FARTHEST_W;
