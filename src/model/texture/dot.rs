@@ -11,7 +11,7 @@ use crate::state::DotMapping;
 use std::ops::{Add, Mul, Neg};
 
 /// A number of the dot unit: `f32` for the definition, `f64` for the ideal.
-pub trait Number: Copy + Add<Output = Self> + Mul<Output = Self> + Neg<Output = Self> {
+pub trait Number: Copy + Mul<Output = Self> + Neg<Output = Self> {
     /// The number 0.
     const ZERO: Self;
     /// The number 2.
@@ -19,6 +19,12 @@ pub trait Number: Copy + Add<Output = Self> + Mul<Output = Self> + Neg<Output = 
 
     /// TSH-4: returns the sum of products.
     fn sum(products: [Self; 3]) -> Self;
+
+    /// TSH-5: returns the sum of two products.
+    #[inline(always)]
+    fn sum_of_two(a: Self, b: Self) -> Self {
+        Self::sum([a, b, Self::ZERO])
+    }
 }
 
 impl Number for f32 {
@@ -147,7 +153,7 @@ pub fn dot<N: Number>(a: Vector<N>, b: Vector<N>) -> N {
 /// TSH-7: returns the displacement of a coordinate, which is two matrix entries times blue and green. Each operation is
 /// rounded.
 #[inline(always)]
-pub fn moved<N: Number>(entries: [N; 2], blue_green: [N; 2]) -> N {
+pub fn moved<N: Number + Add<Output = N>>(entries: [N; 2], blue_green: [N; 2]) -> N {
     entries[0] * blue_green[0] + entries[1] * blue_green[1]
 }
 
@@ -187,7 +193,7 @@ pub fn scale<N: Number>(toward: N) -> N {
 /// TSH-5: returns a component of a reflection, by those of the normal and the eye vector.
 #[inline(always)]
 pub fn reflected<N: Number>([scale, square]: [N; 2], [normal, eye]: [N; 2]) -> N {
-    N::sum([scale * normal, -(square * eye), N::ZERO])
+    N::sum_of_two(scale * normal, -(square * eye))
 }
 
 /// TSH-5: reflects the eye vector about a normal, of which `square` counts as the squared length.

@@ -3,6 +3,7 @@
 
 use super::depths::word;
 use super::{LaneWeights, quotient, ratio, reciprocal};
+use crate::engine::rows::geometry::weights::CHUNK;
 use crate::engine::rows::lanes::{larger, limited, nearest, smaller};
 use crate::engine::rows::sampling::facing::{Facing, floors_on_face};
 use crate::engine::rows::sampling::place::{FARTHEST, Place, change_kind};
@@ -203,13 +204,23 @@ impl Coordinates {
 fn on_faces(sampler: &Sampler, lanes: Range<usize>, place: &mut Place) {
     let (bias, middle) = (sampler.early_bias(), 128.0 * f64::from(sampler.side_of_face()));
     let Place { at: [u, v], images, direction: [x, y, z], .. } = place;
-    let (u, v, images) = (&mut u[lanes.clone()], &mut v[lanes.clone()], &mut images[lanes.clone()]);
-    let (x, y, z) = (&x[lanes.clone()], &y[lanes.clone()], &z[lanes.clone()]);
-    for n in 0..lanes.len() {
-        let direction = [x[n], y[n], z[n]];
-        let facing = Facing::new(direction);
-        images[n] = nearest(facing.number()) as u32;
-        let [along, down] = floors_on_face(facing.components(direction), middle);
-        (u[n], v[n]) = (limited(along) - bias, limited(down) - bias);
+    let mut chunks = [[0.0; CHUNK]; 3];
+    for first in lanes.clone().step_by(CHUNK) {
+        let count = CHUNK.min(lanes.end - first);
+        let (u, v, images) = (&mut u[first..][..count], &mut v[first..][..count], &mut images[first..][..count]);
+        let (x, y, z) = (&x[first..][..count], &y[first..][..count], &z[first..][..count]);
+        let [s, t, m] = chunks.each_mut().map(|chunk| &mut chunk[..count]);
+        for n in 0..count {
+            let direction = [x[n], y[n], z[n]];
+            let facing = Facing::new(direction);
+            images[n] = nearest(facing.number()) as u32;
+            [s[n], t[n], m[n]] = facing.components(direction);
+        }
+        for n in 0..count {
+            // Both are whole. Lanes without a pixel may lie beyond the face.
+            let [along, down] =
+                floors_on_face([s[n], t[n], m[n]], middle).map(|at| smaller(larger(at, 0.0), 2.0 * middle));
+            (u[n], v[n]) = (nearest(along) - bias, nearest(down) - bias);
+        }
     }
 }

@@ -7,6 +7,7 @@ use crate::engine::rows::sampling::facing::{Facing, floors_on_face};
 use crate::number::convert::factor;
 use crate::state::DotMapping;
 use crate::texture::dot;
+use std::ops::{Mul, Neg};
 
 /// A float for each pixel of a block.
 pub(crate) type Floats = [f32; BLOCK];
@@ -99,11 +100,90 @@ impl Linear {
     }
 }
 
+/// A number of the dot unit in a lane.
+///
+/// Sums are computed in single precision, in steps of the 24th bit of the largest term: terms are whole numbers below 2^24, and what a sum of two such
+/// numbers loses is a whole one, too, as is the difference of the sum and either term. No number stands for a sum of terms below the smallest step, and
+/// for one of three terms of which any is infinite: these lanes are computed in doubles.
+#[derive(Clone, Copy)]
+struct Lane(f32);
+
+/// Returns a sum of whole numbers below 2^26, of which the second is below 2^24, to nearest, and what it loses.
+#[inline(always)]
+fn sum_and_loss(a: f32, b: f32) -> (f32, f32) {
+    let sum = a + b;
+    (sum, b - (sum - a))
+}
+
+impl Lane {
+    /// Returns terms in steps of the 24th bit of the largest, toward zero, and such a step. It is no number if it would be below all.
+    #[inline(always)]
+    fn steps<const N: usize>(terms: [Lane; N]) -> ([f32; N], f32) {
+        let top = terms.iter().fold(0, |top, term| term.0.abs().to_bits().max(top));
+        let power = top & f32::INFINITY.to_bits();
+        // 2^150, whose exponent no number has, over the power.
+        let scale = f32::from_bits((277_u32 << 23).wrapping_sub(power));
+        let is_small = top.wrapping_sub(1) < (24 << 23) - 1;
+        let step = power.wrapping_sub(23 << 23) | if is_small { u32::MAX } else { 0 };
+        (terms.map(|term| (term.0 * scale).trunc()), f32::from_bits(step))
+    }
+
+    /// Returns a sum of steps toward zero to 24 bits, if it was rounded to nearest and loses this. A zero is positive.
+    #[inline(always)]
+    fn cut((sum, loss): (f32, f32), step: f32) -> Lane {
+        let is_too_far = loss * sum < 0.0;
+        Lane(f32::from_bits(sum.to_bits().wrapping_sub(is_too_far.into())) * step + 0.0)
+    }
+}
+
+impl Mul for Lane {
+    type Output = Lane;
+    #[inline(always)]
+    fn mul(self, other: Lane) -> Lane {
+        Lane(self.0 * other.0)
+    }
+}
+
+impl Neg for Lane {
+    type Output = Lane;
+    #[inline(always)]
+    fn neg(self) -> Lane {
+        Lane(-self.0)
+    }
+}
+
+impl dot::Number for Lane {
+    const ZERO: Lane = Lane(0.0);
+    const TWO: Lane = Lane(2.0);
+
+    #[inline(always)]
+    fn sum(products: [Lane; 3]) -> Lane {
+        let ([a, b, c], step) = Lane::steps(products);
+        let (sum, first) = sum_and_loss(a, b);
+        let (sum, second) = sum_and_loss(sum, c);
+        Lane::cut(sum_and_loss(sum, first + second), step)
+    }
+
+    #[inline(always)]
+    fn sum_of_two(a: Lane, b: Lane) -> Lane {
+        let ([a, b], step) = Lane::steps([a, b]);
+        Lane::cut(sum_and_loss(a, b), step)
+    }
+}
+
 /// TSH-4: dot products of three numbers and a remapped colour.
 #[inline(always)]
 pub(crate) fn products(lanes: Lanes, [s, t, r]: [&Floats; 3], [x, y, z]: [&Floats; 3], out: &mut Floats) {
+    let mut is_open = false;
     for n in 0..lanes.count() {
-        out[n] = dot::dot([s[n], t[n], r[n]], [x[n], y[n], z[n]]);
+        let Lane(dot) = dot::dot([s[n], t[n], r[n]].map(Lane), [x[n], y[n], z[n]].map(Lane));
+        out[n] = dot;
+        is_open |= dot.is_nan();
+    }
+    if is_open {
+        for n in 0..lanes.count() {
+            out[n] = dot::dot([s[n], t[n], r[n]], [x[n], y[n], z[n]]);
+        }
     }
 }
 
@@ -115,9 +195,16 @@ pub(crate) fn reflect(
     [a, b, c]: [&Floats; 3],
     [out_x, out_y, out_z]: [&mut Floats; 3],
 ) {
+    let mut is_open = false;
     for n in 0..lanes.count() {
-        let [reflected_x, reflected_y, reflected_z] = dot::reflect([x[n], y[n], z[n]], [a[n], b[n], c[n]]).vector;
-        (out_x[n], out_y[n], out_z[n]) = (reflected_x, reflected_y, reflected_z);
+        let reflection = dot::reflect([x[n], y[n], z[n]].map(Lane), [a[n], b[n], c[n]].map(Lane));
+        [out_x[n], out_y[n], out_z[n]] = reflection.vector.map(|Lane(component)| component);
+        is_open |= out_x[n].is_nan() | out_y[n].is_nan() | out_z[n].is_nan();
+    }
+    if is_open {
+        for n in 0..lanes.count() {
+            [out_x[n], out_y[n], out_z[n]] = dot::reflect([x[n], y[n], z[n]], [a[n], b[n], c[n]]).vector;
+        }
     }
 }
 
@@ -197,9 +284,11 @@ pub(crate) fn on_faces(
 #[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
+    use crate::random::Random;
     use crate::raster::interpolate::face_coordinate;
     use crate::state::Named;
     use crate::texture::coordinates::{face_of, on_face};
+    use crate::texture::dot::Number;
     use crate::texture::shader;
 
     /// Every byte in every channel of every mapping, plain and doubled, beside others.
@@ -242,6 +331,61 @@ mod tests {
                 _ => (bits as i32) as f32 / (1_u32 << 30) as f32,
             }
         })
+    }
+
+    /// Sums of terms of all sizes, near to one another and far apart, and of zeros of both signs, against doubles.
+    #[test]
+    fn sums_of_lanes_are_those_of_doubles() {
+        let mut random = Random::seeded(83);
+        for round in 0..4_000_000 {
+            let mut term = || {
+                let (kind, bits) = (random.bits() >> 32, random.bits() as u32);
+                let fraction = match kind & 7 {
+                    0 => 0,
+                    1 => 0x7f_ffff,
+                    2 => 0x7f_fffe,
+                    3 => 1,
+                    4 => 0x40_0000 << (bits % 2) >> (bits % 23) & 0x7f_ffff,
+                    _ => bits & 0x7f_ffff,
+                };
+                match kind >> 3 & 7 {
+                    0 => f32::from_bits(bits & 1 << 31),
+                    1 => f32::from_bits(bits),
+                    _ => f32::from_bits(bits & 1 << 31 | (round % 255 + (bits >> 23) % 28).min(255) << 23 | fraction),
+                }
+            };
+            let terms = [term(), term(), term()];
+            let [a, b, c] = terms.map(Lane);
+            let two = (Lane::sum_of_two(a, b), f32::sum_of_two(terms[0], terms[1]), &terms[..2]);
+            for (Lane(found), wanted, terms) in [(Lane::sum([a, b, c]), f32::sum(terms), &terms[..]), two] {
+                let top = terms.iter().map(|term| term.abs().to_bits()).max().unwrap();
+                let is_open = found.is_nan() && (0 < top && top < 24 << 23 || top >= f32::INFINITY.to_bits());
+                assert!(is_open || found.to_bits() == wanted.to_bits(), "{terms:?}: {found:e}, not {wanted:e}");
+            }
+        }
+    }
+
+    /// Blocks with lanes that doubles compute, and without.
+    #[test]
+    fn blocks_have_the_results_of_the_definition() {
+        let same = |a: f32, b: f32| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan();
+        let mut state = 11;
+        for round in 0..400 {
+            let mut numbers = || {
+                let limit = |x: f32| if round % 2 == 0 { x.clamp(-2.0, 2.0) } else { x };
+                floats(&mut state).map(|x| if x.is_nan() && round % 2 == 0 { 1.0 } else { limit(x) })
+            };
+            let (a, b) = ([numbers(), numbers(), numbers()], [numbers(), numbers(), numbers()]);
+            let (mut dots, mut vectors) = ([0.0; BLOCK], [[0.0; BLOCK]; 3]);
+            products(Lanes::default(), a.each_ref(), b.each_ref(), &mut dots);
+            reflect(Lanes::default(), a.each_ref(), b.each_ref(), vectors.each_mut());
+            for n in 0..BLOCK {
+                let [x, y] = [&a, &b].map(|of| of.each_ref().map(|of| of[n]));
+                assert!(same(dots[n], dot::dot(x, y)), "{x:?} . {y:?}");
+                let wanted = dot::reflect(x, y).vector;
+                assert!((0..3).all(|k| same(vectors[k][n], wanted[k])), "{x:?} and {y:?}");
+            }
+        }
     }
 
     /// Faces and places on them, against the definition.
