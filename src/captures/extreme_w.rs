@@ -1,4 +1,4 @@
-//! RAS-8: vertices behind the eye, and w between 2^-64 and 2^64: W_param.
+//! RAS-8: vertices behind the eye, and w between 2^-64 and 2^64: W_param, Texture_perspective_enable.
 
 use super::*;
 use ninebit::number::transform;
@@ -6,7 +6,7 @@ use ninebit::vertex::unit;
 
 /// The smallest w that the programs name, and the largest.
 const LEAST: f32 = 1.0 / MOST;
-const MOST: f32 = 18_446_744_073_709_551_616.0;
+pub(super) const MOST: f32 = 18_446_744_073_709_551_616.0;
 
 /// Factors of those, as the names of frames have them.
 const FACTORS: [(&str, f32); 20] = [
@@ -44,6 +44,11 @@ fn shape(is_quad: bool, vertices: &[Vertex; 4]) -> Draw {
     }
 }
 
+/// Puts the largest w in place of an infinite one, which a scene may not have.
+fn finite([x, y, z, w]: [f32; 4]) -> [f32; 4] {
+    [x, y, z, w.clamp(-MOST, MOST)]
+}
+
 /// Adds the colours of a draw to those of the frame buffer.
 fn added(draw: Draw) -> Draw {
     let blend = Blend { equation: BlendEquation::Add, source: BlendFactor::One, destination: BlendFactor::One };
@@ -73,7 +78,7 @@ pub(super) fn frames(frames: &mut Frames) {
                     let vertex = |n: usize| {
                         let [x, y] = corners([-80.0, -80.0, 80.0, 80.0])[n].map(|at| at * scale[n]);
                         let seen = unit::transform(&space::rows(&space::IDENTITY), unit::words([x, y, 0.0, w[n]]));
-                        placed(unit::window(seen, [320.0, 240.0, 0.0]), corners(TEXELS)[n])
+                        placed(finite(unit::window(seen, [320.0, 240.0, 0.0])), corners(TEXELS)[n])
                     };
                     checkered(canvas, [0xff00_ffff, 0xffff_0000], added(shape(is_quad, &[0, 1, 2, 3].map(vertex))));
                 });
@@ -83,7 +88,7 @@ pub(super) fn frames(frames: &mut Frames) {
                     // What lies behind the eye is given on the other side.
                     let corner = if w.is_sign_negative() { 2 - n } else { n };
                     let [x, y] = corners([160.0, 70.0, 480.0, 390.0])[corner];
-                    placed([x, y, 0.0, w], corners(TEXELS)[n])
+                    placed(finite([x, y, 0.0, w]), corners(TEXELS)[n])
                 };
                 let drawn = match is_quad {
                     true => shape(true, &[place(0, first), place(1, 1.0), place(2, last), place(3, 1.0)]),
@@ -105,7 +110,7 @@ pub(super) fn frames(frames: &mut Frames) {
     for (suffix, perspective) in [("", false), ("_tex_persp", true)] {
         frames.paint(format!("w_pos_strip{suffix}"), 0xff00_0000, move |canvas| {
             let corner = |at: [f32; 2], w: f32, [r, g, b]: [f32; 3]| Vertex {
-                position: [at[0], at[1], 0.0, w],
+                position: finite([at[0], at[1], 0.0, w]),
                 diffuse: VertexColor::Floats([r, g, b, 1.0]),
                 ..Vertex::default()
             };
@@ -140,4 +145,41 @@ fn reciprocals(canvas: &mut Canvas, first: f32, last: f32) {
         vertex([480.0, 70.0], MOST, MOST, yellow),
     ];
     canvas.draw(added(draw(Topology::Triangles, vertices)));
+}
+
+/// Adds the frames of Texture_perspective_enable: two rectangles each without perspective and with it. The chip culls the triangle whose corner lies behind
+/// the eye, because the eye sees its other side.
+pub(super) fn perspective(frames: &mut Frames) {
+    let last = [[f32::INFINITY, 1.0, 0.980_578, 0.0], [f32::INFINITY, 1.0, 2.980_578, -0.5]];
+    let (red, grey, blue, green) = ([1.0, 0.0, 0.0], [0.5; 3], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]);
+    for (name, is_textured) in [("Untextured", false), ("Textured", true)] {
+        frames.paint(format!("TexPerspective_{name}"), 0xfe32_3232, move |canvas| {
+            if is_textured {
+                let fields = checker([0xffff_ff00, 0xff00_0000].map(argb), 8);
+                canvas.texture(&images::texture(TextureFormat::A8R8G8B8, [256, 256], fields));
+            }
+            for (left, perspective) in [(128.0, false), (384.0, true)] {
+                for (top, w) in [96.0, 288.0].into_iter().zip(last) {
+                    let vertex = |n: usize| {
+                        let [x, y] = corners([left, top, left + 128.0, top + 96.0])[n];
+                        let [r, g, b] = [red, grey, blue, green][n];
+                        let place = placed(finite([x, y, 1.0, w[n]]), corners([0.0, 0.0, 1.0, 1.0])[n]);
+                        Vertex { diffuse: VertexColor::Floats([r, g, b, 1.0]), ..place }
+                    };
+                    // A scene has no vertex behind the eye without perspective.
+                    let all =
+                        [[0, 2, 3], [0, 1, 2]].into_iter().filter(|of| perspective || of.iter().all(|n| w[*n] >= 0.0));
+                    let vertices = all.flat_map(|of| of.map(vertex)).collect();
+                    let (cull, front_face) = (Cull::Back, FrontFace::Clockwise);
+                    let drawn = Draw { perspective, cull, front_face, ..draw(Topology::Triangles, vertices) };
+                    let unit = TextureUnit {
+                        address_s: AddressMode::ClampToEdge,
+                        address_t: AddressMode::ClampToEdge,
+                        ..nearest(0)
+                    };
+                    canvas.draw(if is_textured { fetching(drawn, 0, unit) } else { drawn });
+                }
+            }
+        });
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// The w of the limits: infinity, a number, and 0.
+/// The w of the limits: a large number in place of infinity, another, and a small one.
 fn limits(infinity: f32) -> [f32; 6] {
     [infinity, 0.980_578, 1.0 / infinity, infinity, infinity, infinity]
 }
@@ -36,7 +36,7 @@ fn triangles(w: [f32; 6]) -> Vec<Vertex> {
 pub(super) fn frames(frames: &mut Frames) {
     for (mode, w, polygon_modes) in [
         ("", [1.0; 6], PolygonModes::FILL),
-        ("FM_", limits(f32::INFINITY), PolygonModes::FILL),
+        ("FM_", limits(extreme_w::MOST), PolygonModes::FILL),
         // The model's limit for lines.
         ("LM_", limits(1_048_576.0), WIREFRAME),
     ] {

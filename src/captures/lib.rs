@@ -253,6 +253,7 @@ const SUITES: &[Suite] = &[
     ("Texture_render_target", texel_formats::render_targets),
     ("Texture_render_update_in_place", transfers::in_place),
     ("Texture_shadow_comparator", shadow::frames),
+    ("Texture_perspective_enable", extreme_w::perspective),
     ("Texture_signed_component_tests", texel_formats::signed),
     ("Vertex_shader_independence_tests", transfers::independence),
     ("Vertex_shader_rounding_tests", rounding::frames),
