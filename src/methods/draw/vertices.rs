@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 use ninebit::number::convert::snap;
 use ninebit::number::transform::{product, sum};
+use ninebit::raster::assemble;
 use ninebit::state::{
     ClipDepth, DepthFormat, Draw, PolygonMode, Positions, Vertex, VertexColor, VertexDepths, Vertices, Viewport,
 };
@@ -52,7 +53,7 @@ pub(crate) fn vertices_of(
     if view.get_or(class::SET_LIGHT_TWO_SIDE_ENABLE, 0) != 0 && draw.topology.has_faces() {
         view.note(Gap::NotModelled("colours of back faces".into()));
     }
-    let (positions, places) = place(view, &outputs, depth);
+    let (positions, places) = place(view, draw, &outputs, depth);
     if let (Positions::Clip(_), Some(test)) = (&positions, &mut draw.depth_test) {
         test.vertex_depths = VertexDepths::Fractions;
     }
@@ -342,15 +343,16 @@ fn inline(view: &mut View<'_>, batch: &Batch, reads: &[bool; ATTRIBUTES]) -> (Ve
     (vertices, (0..count).collect())
 }
 
-/// Returns how the positions are stated. Window positions are, unless a vertex lies behind the viewer or far outside: then the draw is clipped, which
-/// the chip does by other means.
-fn place(view: &mut View<'_>, outputs: &[Outputs], depth: DepthFormat) -> (Positions, Vec<[f32; 4]>) {
-    const SMALLEST: f32 = 1.0 / (1 << 20) as f32;
-    let fits = |[x, y, z, w]: [f32; 4]| {
-        x.abs() < 4096.0 && y.abs() < 4096.0 && z.is_finite() && (SMALLEST..=1_048_576.0).contains(&w)
-    };
-    if outputs.iter().all(|output| fits(output.position)) {
-        return (Positions::Window, outputs.iter().map(|output| output.position).collect());
+/// Returns how the positions of a draw are stated. Window positions are, unless a vertex lies where the rasteriser's model ends: then the draw is clipped,
+/// which the chip does not do.
+fn place(view: &mut View<'_>, draw: &Draw, outputs: &[Outputs], depth: DepthFormat) -> (Positions, Vec<[f32; 4]>) {
+    // RAS-8: no larger w counts, and a scene has finite ones.
+    let limited =
+        |[x, y, z, w]: [f32; 4]| [x, y, z, w.clamp(-18_446_744_073_709_551_616.0, 18_446_744_073_709_551_616.0)];
+    let window: Vec<[f32; 4]> = outputs.iter().map(|output| limited(output.position)).collect();
+    let draw = Draw { positions: Positions::Window, ..draw.clone() };
+    if window.iter().all(|position| assemble::takes_position(&draw, *position)) {
+        return (Positions::Window, window);
     }
     // x' = x + (X/w + 1) width/2 with a width of 2 and x = -1; y points down.
     let viewport = Viewport {
@@ -370,6 +372,8 @@ fn place(view: &mut View<'_>, outputs: &[Outputs], depth: DepthFormat) -> (Posit
         let clip = ndc.map(|n| n * w);
         if clip.iter().all(|n| n.is_finite()) { clip } else { [0.0, 0.0, 0.0, -1.0] }
     };
-    view.note(Gap::NotModelled("vertices behind the viewer or far outside, whose triangles are clipped here".into()));
+    view.note(Gap::NotModelled(
+        "vertices too far outside, or of figures that are not filled behind the viewer, which are clipped here".into(),
+    ));
     (Positions::Clip(viewport), outputs.iter().map(|output| clip(output.position)).collect())
 }

@@ -240,7 +240,7 @@ fn finish(
         }
     }
     let given = vertices.len() - blamed.len();
-    let may_be_far = may_be_far(draw, &triangles);
+    let may_be_far = may_be_far(draw);
     let mut is_far = false;
     let mut errors: Vec<PositionError> = Vec::new();
     for v in (0..vertices.len()).filter(|v| used[*v] && !in_range(vertices.position(*v))) {
@@ -302,11 +302,15 @@ fn in_range(p: [f32; 4]) -> bool {
     p.iter().all(|n| n.is_finite()) && project::in_band(p) && (SMALLEST_W..=LARGEST_W).contains(&p[3])
 }
 
-/// Returns whether vertices may lie [far away](in_far_range): the figures are filled triangles that were given in window coordinates.
-fn may_be_far(draw: &Draw, triangles: &Triangles) -> bool {
-    let are_triangles = || (0..triangles.len()).all(|number| triangles.figure(number) == Figure::Triangle);
+/// Returns whether vertices may lie [far away](in_far_range): the figures are filled triangles that are given in window coordinates.
+fn may_be_far(draw: &Draw) -> bool {
     let are_filled = draw.polygon_modes == PolygonModes::FILL && !draw.smooth_polygons;
-    matches!(draw.positions, Positions::Window) && are_filled && are_triangles()
+    matches!(draw.positions, Positions::Window) && draw.topology.has_faces() && are_filled
+}
+
+/// RAS-0: returns whether a draw takes a window position.
+pub fn takes_position(draw: &Draw, position: [f32; 4]) -> bool {
+    in_range(position) || may_be_far(draw) && in_far_range(position, draw.perspective)
 }
 
 /// Returns whether a window position is within RAS-0 for filled triangles. Those behind the eye need perspective (RAS-8).
