@@ -69,11 +69,11 @@ fn equal(frames: &mut Frames) {
                     let range = DepthRange { lowest, highest: DEEPEST, clamps, drops_triangles: false };
                     DepthTest { w_buffer, ..in_steps(function, true, Some(range)) }
                 };
-                canvas.draw(textured(corners, test(CompareFunction::Less, false)));
+                let floor = textured(corners, test(CompareFunction::Less, false));
                 let red = VertexColor::Floats([1.0, 0.0, 0.0, 1.0]);
-                let Draw { vertices, .. } = textured(corners, test(CompareFunction::Less, false));
-                let vertices = vertices.iter().map(|vertex| Vertex { diffuse: red, ..vertex }).collect();
+                let vertices = floor.vertices.iter().map(|vertex| Vertex { diffuse: red, ..vertex }).collect();
                 let depth_test = Some(test(CompareFunction::Equal, true));
+                canvas.draw(floor);
                 canvas.draw(Draw { depth_test, ..draw(Topology::Quads, vertices) });
             });
         }

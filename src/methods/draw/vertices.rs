@@ -346,10 +346,8 @@ fn inline(view: &mut View<'_>, batch: &Batch, reads: &[bool; ATTRIBUTES]) -> (Ve
 /// Returns how the positions of a draw are stated. Window positions are, unless a vertex lies where the rasteriser's model ends: then the draw is clipped,
 /// which the chip does not do.
 fn place(view: &mut View<'_>, draw: &Draw, outputs: &[Outputs], depth: DepthFormat) -> (Positions, Vec<[f32; 4]>) {
-    // RAS-8: no larger w counts, and a scene has finite ones.
-    let limited =
-        |[x, y, z, w]: [f32; 4]| [x, y, z, w.clamp(-18_446_744_073_709_551_616.0, 18_446_744_073_709_551_616.0)];
-    let window: Vec<[f32; 4]> = outputs.iter().map(|output| limited(output.position)).collect();
+    // RAS-8 counts no larger w, and a scene has finite ones.
+    let window: Vec<[f32; 4]> = outputs.iter().map(|output| assemble::limit_w(output.position)).collect();
     let draw = Draw { positions: Positions::Window, ..draw.clone() };
     if window.iter().all(|position| assemble::takes_position(&draw, *position)) {
         return (Positions::Window, window);

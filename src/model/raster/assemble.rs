@@ -319,8 +319,8 @@ fn in_far_range([x, y, z, w]: [f32; 4], perspective: bool) -> bool {
     z.is_finite() && in_guard(x) && in_guard(y) && !w.is_nan() && (perspective || w.is_sign_positive())
 }
 
-/// RAS-8: limits the magnitude of w.
-fn limit_w([x, y, z, w]: [f32; 4]) -> [f32; 4] {
+/// RAS-8: limits the magnitude of the w of a position.
+pub fn limit_w([x, y, z, w]: [f32; 4]) -> [f32; 4] {
     [x, y, z, w.abs().clamp(NEAREST_W, FARTHEST_W).copysign(w)]
 }
 
