@@ -87,7 +87,9 @@ pub fn pack(pixels: &[[u8; 4]], format: TextureFormat) -> Vec<u32> {
 
 /// Packs a pixel R, G, B, A into a word of the format.
 pub fn word(pixel: [u8; 4], format: TextureFormat) -> u32 {
-    let [r, g, b, a] = pixel.map(u32::from);
+    // Called for each texel by crates that are not optimised in a build for tests.
+    let [r, g, b, a] = pixel;
+    let [r, g, b, a] = [u32::from(r), u32::from(g), u32::from(b), u32::from(a)];
     match format {
         TextureFormat::A8R8G8B8 | TextureFormat::R16B16 => a << 24 | r << 16 | g << 8 | b,
         TextureFormat::X8R8G8B8 | TextureFormat::Yuy2 | TextureFormat::Uyvy => r << 16 | g << 8 | b,

@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use similar::{Algorithm, DiffTag, capture_diff_slices};
+use similar::algorithms::{Capture, Compact, Replace, myers};
+use similar::{DiffOp, DiffTag};
 
 use super::text::{expression, graded, legend, step_value};
 use ninebit::engine::{DrawTrace, PixelTrace};
@@ -62,7 +63,7 @@ fn draw_lines(lines: &mut Vec<SideBySideLine>, draw: &DrawTrace, first: &[Step],
         let (name, first, second) = (step.name.clone(), a.map(side), b.map(side));
         lines.push(SideBySideLine { heading, name, rule: step.rule, first, second });
     };
-    for op in capture_diff_slices(Algorithm::Myers, &names(first), &names(second)) {
+    for op in difference(&names(first), &names(second)) {
         let (tag, old, new) = op.as_tag_tuple();
         if tag == DiffTag::Equal {
             old.zip(new).for_each(|(a, b)| line(first.get(a), second.get(b)));
@@ -71,6 +72,13 @@ fn draw_lines(lines: &mut Vec<SideBySideLine>, draw: &DrawTrace, first: &[Step],
             new.for_each(|n| line(None, second.get(n)));
         }
     }
+}
+
+/// Returns the operations that make the second of the first. The algorithm is called by its name, because a choice at run time compiles them all.
+fn difference<T: std::hash::Hash + Eq>(first: &[T], second: &[T]) -> Vec<DiffOp> {
+    let mut operations = Compact::new(Replace::new(Capture::new()), first, second);
+    let Ok(()) = myers::diff(&mut operations, first, 0..first.len(), second, 0..second.len());
+    operations.into_inner().into_inner().into_ops()
 }
 
 /// Returns the lines as a text table. `titles` are the headings of the first and second trace. Lines that differ begin with `>`.

@@ -10,6 +10,7 @@ pub mod context;
 mod counting;
 pub mod pixel;
 mod planes;
+mod reals;
 mod report;
 mod rows;
 mod texture_words;
@@ -19,6 +20,7 @@ pub mod walk;
 
 pub use counting::{DrawCounts, ShadedPixels, affordable, count, fragments, shaded};
 pub use planes::{FRAGMENT_NAMES, Plane, PlaneOptions, plane_names, planes};
+pub use reals::Reals;
 pub use rows::Isa;
 use rows::Kernels;
 pub use texture_words::TextureWords;

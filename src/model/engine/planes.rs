@@ -4,13 +4,14 @@
 
 use std::collections::BTreeMap;
 
+use super::reals::FragmentRecorder;
 use super::tracing::{Pixel, TraceError};
 use super::{BAND, TextureWords, cleared, cleared_colors, draw_defined, walk};
-use crate::number::{Lane, Pair};
+use crate::number::Pair;
 use crate::plan::Plan;
 use crate::state::Rectangle;
 use crate::threads::on_threads;
-use crate::trace::{Observer, Silent, Step, Unit};
+use crate::trace::{Silent, Step, Unit};
 #[cfg(feature = "threads")]
 use rayon::prelude::*;
 
@@ -98,15 +99,8 @@ pub const FRAGMENT_NAMES: [&str; 3] = ["fragment.draw", "fragment.triangle", "fr
 /// # Errors
 /// The target or the draw does not exist, or the rectangle is not inside the target.
 pub fn planes(plan: &Plan, names: &[String], options: &PlaneOptions) -> Result<Vec<Plane>, TraceError> {
-    let record = |pixels| Values {
-        names,
-        planes: vec![Plane::blank(pixels, options.ideal); names.len()],
-        found: vec![None; names.len()],
-    };
-    let bands = match options.ideal {
-        true => observe::<Pair, _>(plan, options, |_| true, record)?,
-        false => observe::<i32, _>(plan, options, |_| true, record)?,
-    };
+    let record = |pixels| Values { names, planes: vec![Plane::blank(pixels, options.ideal); names.len()] };
+    let bands = observe(plan, options, Some(names), |_| true, record)?;
     let mut planes = vec![Plane::default(); names.len()];
     for band in &bands {
         planes.iter_mut().zip(&band.planes).for_each(|(plane, part)| plane.append(part));
@@ -122,7 +116,9 @@ pub fn plane_names(plan: &Plan, options: &PlaneOptions) -> Result<BTreeMap<Strin
     let Rectangle { width, height, .. } = rectangle(plan, options)?;
     let pixels = u64::from(width) * u64::from(height);
     let step = (pixels / 256).isqrt().max(1) as i64;
-    let bands = observe::<i32, _>(plan, options, |(x, y)| x % step == 0 && y % step == 0, |_| Names::default())?;
+    let are_few = |(x, y)| x % step == 0 && y % step == 0;
+    let every = PlaneOptions { dropped: true, draw: None, ..*options };
+    let bands = observe(plan, &every, None, are_few, |_| Names::default())?;
     let mut names = BTreeMap::new();
     for band in bands {
         names.extend(band.names);
@@ -133,12 +129,10 @@ pub fn plane_names(plan: &Plan, options: &PlaneOptions) -> Result<BTreeMap<Strin
     Ok(names)
 }
 
-/// An observer of all fragments of some rows.
-trait Record: Observer + Send {
-    /// Begins a fragment.
-    fn begin(&mut self);
-    /// Ends the fragment, which counts, of the pixel with this index among those of the rows.
-    fn end(&mut self, pixel: usize, fragment: [i64; 3]);
+/// What is kept of all fragments of some rows.
+trait Record: Send {
+    /// Keeps the steps of a fragment of the pixel with this index among those of the rows.
+    fn keep(&mut self, pixel: usize, fragment: [i64; 3], steps: Vec<Step>);
 }
 
 /// A value of a pixel.
@@ -153,45 +147,22 @@ struct Value {
 struct Values<'a> {
     names: &'a [String],
     planes: Vec<Plane>,
-    /// Values of the fragment that is shaded.
-    found: Vec<Option<Value>>,
-}
-
-impl Observer for Values<'_> {
-    const ON: bool = true;
-
-    fn wants(&self, parts: &[&str]) -> bool {
-        self.names.iter().any(|name| {
-            let mut rest = Some(name.as_str());
-            for part in parts {
-                rest = rest.and_then(|rest| rest.strip_prefix(part));
-            }
-            rest.is_some()
-        })
-    }
-
-    fn step(&mut self, step: Step) {
-        for (name, found) in self.names.iter().zip(&mut self.found) {
-            if *name == step.name {
-                let ideal = step.ideal.unwrap_or(f64::NAN);
-                *found = Some(Value { value: step.value, ideal, unit: step.unit() });
-            }
-        }
-    }
 }
 
 impl Record for Values<'_> {
-    fn begin(&mut self) {
-        self.found.fill(None);
-    }
-
-    fn end(&mut self, pixel: usize, fragment: [i64; 3]) {
-        for (n, name) in self.names.iter().enumerate() {
-            let own = FRAGMENT_NAMES.iter().position(|own| own == name);
-            let whole =
-                |at: usize| Value { value: fragment[at], ideal: f64::NAN, unit: Unit { per_one: 1, exponent: 0 } };
-            if let Some(value) = own.map(whole).or(self.found[n]) {
-                self.planes[n].put(pixel, value);
+    fn keep(&mut self, pixel: usize, fragment: [i64; 3], steps: Vec<Step>) {
+        let whole = |value: i64| Value { value, ideal: f64::NAN, unit: Unit { per_one: 1, exponent: 0 } };
+        for (name, plane) in self.names.iter().zip(&mut self.planes) {
+            let value = match FRAGMENT_NAMES.iter().position(|own| own == name) {
+                Some(own) => Some(whole(fragment[own])),
+                None => steps.iter().rfind(|step| step.name == *name).map(|step| Value {
+                    value: step.value,
+                    ideal: step.ideal.unwrap_or(f64::NAN),
+                    unit: step.unit(),
+                }),
+            };
+            if let Some(value) = value {
+                plane.put(pixel, value);
             }
         }
     }
@@ -203,18 +174,12 @@ struct Names {
     names: BTreeMap<String, String>,
 }
 
-impl Observer for Names {
-    const ON: bool = true;
-
-    fn step(&mut self, step: Step) {
-        self.names.entry(step.name).or_insert(step.block);
-    }
-}
-
 impl Record for Names {
-    fn begin(&mut self) {}
-
-    fn end(&mut self, _: usize, _: [i64; 3]) {}
+    fn keep(&mut self, _: usize, _: [i64; 3], steps: Vec<Step>) {
+        for step in steps {
+            self.names.entry(step.name).or_insert(step.block);
+        }
+    }
 }
 
 /// Returns the pixels that are observed, all of them inside the target.
@@ -243,10 +208,11 @@ struct Band<R> {
     record: R,
 }
 
-/// Draws the pixels of a rectangle. Fragments that count, of pixels that `chosen` names, are observed by the record of their band.
-fn observe<L: Lane + Sync, R: Record>(
+/// Draws the pixels of a rectangle. The record of a band keeps steps of some names, or all, of fragments that count, of pixels that `chosen` names.
+fn observe<R: Record>(
     plan: &Plan,
     options: &PlaneOptions,
+    names: Option<&[String]>,
     chosen: impl Fn((i64, i64)) -> bool + Sync,
     record: impl Fn(usize) -> R + Sync,
 ) -> Result<Vec<R>, TraceError> {
@@ -279,7 +245,7 @@ fn observe<L: Lane + Sync, R: Record>(
                 finished = index;
             }
             let words = TextureWords::new(plan, std::slice::from_ref(planned), &frames.surfaces);
-            let images = words.images::<L>();
+            let images = words.images::<Pair>();
             let counts = options.draw.is_none_or(|only| only == index);
             let columns = i64::from(x)..i64::from(x + width);
             let draw = |band: &mut Band<R>| {
@@ -289,10 +255,10 @@ fn observe<L: Lane + Sync, R: Record>(
                         return;
                     }
                     let at = (j - band.first_row) as usize * width as usize + (i - columns.start) as usize;
-                    band.record.begin();
-                    let stored = band.pixels[at].shade(planned, context, (i, j), &images, &mut band.record);
+                    let mut recorder = FragmentRecorder { names, ..FragmentRecorder::default() };
+                    let stored = band.pixels[at].shade(planned, context, (i, j), &images, &mut recorder);
                     if counts && (stored || options.dropped) {
-                        band.record.end(at, [index as i64, context.number as i64, i64::from(stored)]);
+                        band.record.keep(at, [index as i64, context.number as i64, i64::from(stored)], recorder.steps);
                     }
                 });
             };

@@ -5,6 +5,7 @@ use std::fmt;
 
 use super::context::TriangleContext;
 use super::pixel::{DepthStencil, Fragment};
+use super::reals::{FragmentRecorder, Reals};
 use super::{TextureWords, cleared, cleared_colors, draw_defined};
 use crate::number::{Lane, Pair};
 use crate::plan::{Plan, PlannedDraw};
@@ -13,7 +14,7 @@ use crate::raster::stroke::Figure;
 use crate::rop::surface;
 use crate::state::{Rectangle, StageOrigin, Target};
 use crate::texture::planned::Image;
-use crate::trace::{Observer, Recorder, Silent, Step};
+use crate::trace::{Observer, Silent, Step};
 
 /// Everything that happens to one pixel of a render target.
 #[derive(Clone, Debug, PartialEq)]
@@ -257,17 +258,22 @@ impl<'a> Tracer<'a> {
     ///
     /// # Errors
     /// An error of `each`, which ends the trace.
-    pub fn run<E>(&self, each: impl FnMut(DrawTrace) -> Result<(), E>) -> Result<TraceEnd, E> {
-        self.run_with::<Pair, _, _>(Recorder::default, |recorder| recorder.steps, each)
+    pub fn run<E>(&self, mut each: impl FnMut(DrawTrace) -> Result<(), E>) -> Result<TraceEnd, E> {
+        let mut error = None;
+        let end = self.run_each(&mut |fragment| {
+            error = each(fragment).err();
+            error.is_none()
+        });
+        error.map_or(Ok(end), Err)
     }
 
-    /// Does the same as [`run`](Self::run) in a lane, with an observer for each kept fragment that hands its steps over.
-    pub(crate) fn run_with<L: Lane, O: Observer, E>(
-        &self,
-        recorder: impl Fn() -> O,
-        steps: impl Fn(O) -> Vec<Step>,
-        mut each: impl FnMut(DrawTrace) -> Result<(), E>,
-    ) -> Result<TraceEnd, E> {
+    fn run_each(&self, each: &mut dyn FnMut(DrawTrace) -> bool) -> TraceEnd {
+        self.run_with::<Pair>(Reals::default(), each)
+    }
+
+    /// Does the same as [`run`](Self::run) in a lane and with the real numbers of some rules, as long as `each` wants more. `each` is no
+    /// type parameter, so that the pipe is compiled in this crate alone.
+    pub(crate) fn run_with<L: Lane>(&self, reals: Reals, each: &mut dyn FnMut(DrawTrace) -> bool) -> TraceEnd {
         let (plan, description) = (self.plan, self.target());
         let mut frames = cleared(plan);
         // Whole frames are needed only if a later draw reads one.
@@ -279,7 +285,7 @@ impl<'a> Tracer<'a> {
         let place = (i64::from(self.pixel.0), i64::from(self.pixel.1));
         let mut passed_over = self.left_out;
         let mut finished = 0;
-        for (index, planned) in self.draws() {
+        'draws: for (index, planned) in self.draws() {
             if rendered {
                 for before in &plan.draws[finished..index] {
                     draw_defined(plan, before, &mut frames, &mut Silent);
@@ -296,12 +302,12 @@ impl<'a> Tracer<'a> {
                 context.complete();
                 if !self.keeps(index) || passed_over > 0 {
                     passed_over -= u64::from(self.keeps(index));
-                    pixel.shade(planned, &context, place, &textures, &mut Silent);
+                    pixel.shade(planned, &context, place, &textures, &mut reals.clone());
                     continue;
                 }
-                let mut recorder = recorder();
+                let mut recorder = FragmentRecorder { reals, ..FragmentRecorder::default() };
                 let stored = pixel.shade(planned, &context, place, &textures, &mut recorder);
-                each(DrawTrace {
+                let is_wanted = each(DrawTrace {
                     draw: index,
                     name: planned.name.clone(),
                     triangle: context.number,
@@ -309,12 +315,15 @@ impl<'a> Tracer<'a> {
                     piece: planned.assembly.clipping.piece(context.number).copied(),
                     stored,
                     shown: surface::show(planned.surface, pixel.word),
-                    steps: steps(recorder),
+                    steps: recorder.steps,
                     program_origin: planned.program_origin.clone(),
-                })?;
+                });
+                if !is_wanted {
+                    break 'draws;
+                }
             }
         }
-        Ok(TraceEnd { shown: surface::show(description.format, pixel.word), word: pixel.word })
+        TraceEnd { shown: surface::show(description.format, pixel.word), word: pixel.word }
     }
 }
 

@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 
-use super::reals::RealsRecorder;
 use super::{Shortcut, Shortcuts};
 use crate::engine::context::TriangleContext;
 use crate::engine::pixel::{DepthStencil, Fragment};
@@ -12,6 +11,7 @@ use crate::number::{Lane, Pair};
 use crate::plan::{Plan, PlannedDraw};
 use crate::raster::ideal::Outline;
 use crate::raster::stroke::Figure;
+use crate::trace::{Observer, Silent};
 
 /// One of so many pixels is few: the scalar engine draws them sooner than the fast one draws all.
 const FEW: usize = 32;
@@ -97,15 +97,15 @@ pub fn render(plan: &Plan, shortcuts: Shortcuts, options: &RenderOptions, frames
     let are_few = |mask: &PixelSelection| mask.count() * FEW < pixels;
     if !shortcuts.need_scalar() {
         match mask.filter(|mask| are_few(mask)) {
-            Some(mask) => draw_all::<i32>(plan, shortcuts, frames, Some(mask)),
+            Some(mask) => draw_all::<i32, _>(plan, shortcuts, frames, Some(mask), &mut Silent),
             None => {
                 engine::Renderer::new(plan, options).redraw(frames);
             }
         }
     } else if shortcuts.lead() {
-        draw_all::<Pair<f32>>(plan, shortcuts, frames, mask);
+        draw_all::<Pair<f32>, _>(plan, shortcuts, frames, mask, &mut shortcuts.reals());
     } else {
-        draw_all::<Pair>(plan, shortcuts, frames, mask);
+        draw_all::<Pair, _>(plan, shortcuts, frames, mask, &mut shortcuts.reals());
     }
 }
 
@@ -123,45 +123,50 @@ pub fn trace(
     let plan = &*changed(plan, shortcuts);
     let tracer = Tracer::new(plan, target, pixel, None, fragments)?;
     let mut draws = Vec::new();
-    let keep = |draw| {
+    let mut keep = |draw| {
         draws.push(draw);
-        Ok::<(), std::convert::Infallible>(())
+        true
     };
-    let observer = || RealsRecorder { reals: shortcuts.reals(), ..RealsRecorder::default() };
-    let Ok(end) = if shortcuts.lead() {
-        tracer.run_with::<Pair<f32>, _, _>(observer, |observer| observer.recorder.steps, keep)
+    let end = if shortcuts.lead() {
+        tracer.run_with::<Pair<f32>>(shortcuts.reals(), &mut keep)
     } else {
-        tracer.run_with::<Pair, _, _>(observer, |observer| observer.recorder.steps, keep)
+        tracer.run_with::<Pair>(shortcuts.reals(), &mut keep)
     };
     let (cleared, left_out) = (tracer.cleared(), tracer.left_out());
     let (target, (x, y)) = (tracer.target().name.clone(), pixel);
     Ok(PixelTrace { target, x, y, cleared, shown: end.shown, word: end.word, left_out, draws })
 }
 
-fn draw_all<L: Lane>(plan: &Plan, shortcuts: Shortcuts, frames: &mut Frames, mask: Mask<'_>) {
+fn draw_all<L: Lane, O: Observer>(
+    plan: &Plan,
+    shortcuts: Shortcuts,
+    frames: &mut Frames,
+    mask: Mask<'_>,
+    observer: &mut O,
+) {
     for planned in &plan.draws {
         // The surface leaves the frames during the draw, so that the other surfaces can be read as textures.
         let surface = &mut frames.surfaces[planned.target];
         let (mut words, mut depth) = (std::mem::take(&mut surface.words), std::mem::take(&mut surface.depth));
         let mask = mask.filter(|_| planned.target == 0);
-        draw::<L>(plan, planned, shortcuts, &frames.surfaces, (&mut words, &mut depth), mask);
+        draw::<L, O>(plan, planned, shortcuts, &frames.surfaces, (&mut words, &mut depth), mask, observer);
         let surface = &mut frames.surfaces[planned.target];
         (surface.words, surface.depth) = (words, depth);
     }
 }
 
-fn draw<L: Lane>(
+fn draw<L: Lane, O: Observer>(
     plan: &Plan,
     planned: &PlannedDraw,
     shortcuts: Shortcuts,
     surfaces: &[Surface],
     (words, depth): (&mut [u32], &mut [u32]),
     mask: Mask<'_>,
+    observer: &mut O,
 ) {
     let textures = TextureWords::new(plan, std::slice::from_ref(planned), surfaces);
     let images = textures.images::<L>();
     let target = &plan.targets[planned.target];
-    let mut reals = shortcuts.reals();
     let is_unsnapped = shortcuts.contains(Shortcut::UnsnappedVertices);
     let mut outline: Option<(usize, Option<Outline>)> = None;
     let mut shade = |context: &TriangleContext<'_>, i: i64, j: i64| {
@@ -180,7 +185,7 @@ fn draw<L: Lane>(
             }
             fragment.weights = outline.as_ref().and_then(|(_, outline)| Some(outline.as_ref()?.weights(i, j)));
         }
-        let stored = context.shade::<L, _>(&fragment, &mut memory, None, &images, &mut reals);
+        let stored = context.shade::<L, _>(&fragment, &mut memory, None, &images, observer);
         if let Some(slot) = depth.get_mut(at) {
             *slot = memory.word();
         }

@@ -6,13 +6,12 @@
 
 mod depths;
 mod draw;
-mod reals;
 mod state;
 mod texels;
 
+pub use crate::engine::Reals;
 pub use depths::shown_depth;
 pub use draw::{Mask, PixelSelection, drawn, render, trace};
-pub use reals::Reals;
 
 use crate::plan::Plan;
 use crate::state::{Named, Policies, named};
@@ -243,7 +242,7 @@ impl Shortcuts {
 
     /// Returns the numbers that stay real.
     fn reals(self) -> Reals {
-        let mut reals = Reals::default();
+        let mut reals = Reals::none();
         for shortcut in self.iter() {
             shortcut.reading().reals.iter().for_each(|rule| reals.keep(*rule));
         }
@@ -264,7 +263,7 @@ impl Shortcuts {
     /// Returns whether the scalar engine has to draw, because something stays a real number or is computed otherwise.
     pub fn need_scalar(self) -> bool {
         const SCALAR: [Shortcut; 3] = [Shortcut::LuminanceOfAlpha, Shortcut::UnitNormals, Shortcut::WhiteUnbound];
-        self.lead() || SCALAR.iter().any(|shortcut| self.contains(*shortcut)) || self.reals() != Reals::default()
+        self.lead() || SCALAR.iter().any(|shortcut| self.contains(*shortcut)) || self.reals() != Reals::none()
     }
 }
 

@@ -1,29 +1,36 @@
-//! [`Reals`], the observer that keeps the real numbers of some rules, and [`RealsRecorder`], which records their steps as well.
+//! [`Reals`], the observer that keeps the real numbers of some rules, and [`FragmentRecorder`], which records their steps as well.
 
 use crate::number::Lane;
 use crate::rop::surface;
 use crate::state::SurfaceFormat;
-use crate::trace::{Observer, Recorder, Rule, Step};
+use crate::trace::{Observer, Rule, Step};
 
 /// An observer under which some rules yield the real numbers of a paired lane, and all others the integers of the definition. It makes
-/// another renderer of the scalar engine: later rules start from what it returns.
+/// another renderer of the scalar engine: later rules start from what it returns. The default leaves both numbers as they are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Reals {
+    /// Whether the other rules yield the integers.
+    settles: bool,
     /// The rules, by their number.
     rules: u64,
     /// Whether depths are computed in single precision.
-    pub(super) depths: bool,
+    pub(crate) depths: bool,
     /// The least depth word above 0; smaller ones become 0.
-    pub(super) least_depth: u32,
+    pub(crate) least_depth: u32,
     /// Whether the alpha test compares real numbers.
-    pub(super) alpha: bool,
+    pub(crate) alpha: bool,
     /// Whether surfaces of 16 bits round to nearest.
-    pub(super) stores: bool,
+    pub(crate) stores: bool,
 }
 
 impl Reals {
+    /// Returns an observer that keeps the real numbers of no rule yet.
+    pub(crate) fn none() -> Reals {
+        Reals { settles: true, ..Reals::default() }
+    }
+
     /// Keeps the real numbers of a rule.
-    pub(super) fn keep(&mut self, rule: Rule) {
+    pub(crate) fn keep(&mut self, rule: Rule) {
         self.rules |= 1 << rule as u64;
     }
 
@@ -39,15 +46,15 @@ impl Observer for Reals {
     fn step(&mut self, _step: Step) {}
     #[inline]
     fn observe<L: Lane>(&mut self, rule: Rule, value: L) -> L {
-        value.settled(self.has(rule))
+        if self.settles { value.settled(self.has(rule)) } else { value }
     }
     #[inline]
     fn observe_factor<L: Lane>(&mut self, rule: Rule, factor: L::Mapped) -> L::Mapped {
-        L::settled_factor(factor, self.has(rule))
+        if self.settles { L::settled_factor(factor, self.has(rule)) } else { factor }
     }
     #[inline]
     fn observe_weight<L: Lane>(&mut self, rule: Rule, weight: L::Weight) -> L::Weight {
-        L::settled_weight(weight, self.has(rule))
+        if self.settles { L::settled_weight(weight, self.has(rule)) } else { weight }
     }
     #[inline]
     fn observe_depth(&mut self, word: u32, largest: u32, ideal: impl FnOnce() -> f64) -> u32 {
@@ -65,18 +72,34 @@ impl Observer for Reals {
     }
 }
 
-/// [`Reals`] and a recorder of the steps.
+/// The observer of a fragment: [`Reals`], and the steps of some names, or all. The pipe with its reports is compiled for this observer alone, whoever
+/// reads the steps.
 #[derive(Debug, Default)]
-pub(super) struct RealsRecorder {
+pub(super) struct FragmentRecorder<'a> {
     pub(super) reals: Reals,
-    pub(super) recorder: Recorder,
+    /// The names that are wanted; `None` for all.
+    pub(super) names: Option<&'a [String]>,
+    pub(super) steps: Vec<Step>,
 }
 
-impl Observer for RealsRecorder {
+impl Observer for FragmentRecorder<'_> {
     const ON: bool = true;
     const MEASURES: bool = true;
+    fn wants(&self, parts: &[&str]) -> bool {
+        self.names.is_none_or(|names| {
+            names.iter().any(|name| {
+                let mut rest = Some(name.as_str());
+                for part in parts {
+                    rest = rest.and_then(|rest| rest.strip_prefix(part));
+                }
+                rest.is_some()
+            })
+        })
+    }
     fn step(&mut self, step: Step) {
-        self.recorder.step(step);
+        if self.names.is_none_or(|names| names.contains(&step.name)) {
+            self.steps.push(step);
+        }
     }
     fn observe<L: Lane>(&mut self, rule: Rule, value: L) -> L {
         self.reals.observe(rule, value)
