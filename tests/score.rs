@@ -11,8 +11,9 @@ use std::collections::BTreeMap;
 use std::fs;
 
 use ninebit::limits::Limits;
+use ninebit::plan::{Plan, PlanOptions};
 use ninebit::random::Random;
-use ninebit::shortcut::{Shortcut, Shortcuts};
+use ninebit::shortcut::{self, Shortcut, Shortcuts};
 use ninebit::state::Named;
 use ninebit_files::output::{Compression, encode_png};
 use ninebit_scene::image::Rgba;
@@ -217,4 +218,24 @@ fn the_catalogue_is_written() {
         table += &format!("| `{}` | {} | {} |\n", shortcut.name(), rules.join(", "), shortcut.reading().does);
     }
     pages::hold("docs/evidence/shortcuts.md", "tests/score.rs (shortcuts)", &table);
+}
+
+/// The word of a pixel does not depend on how many of its fragments a trace passes on.
+#[test]
+fn fragments_that_a_trace_leaves_out_are_drawn_with_shortcuts() {
+    let shortcuts: Shortcuts = [Shortcut::FloatBlend, Shortcut::FloatShader].into_iter().collect();
+    let mut left_out = 0;
+    for name in ["buffers/mirror", "bench/w12", "bench/w4"] {
+        let path = at("vectors/scenes").join(format!("{name}.ron"));
+        let scene = ninebit_scene::load(&path, &Limits::default()).unwrap().scene;
+        let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
+        let (width, height) = (plan.targets()[0].width, plan.targets()[0].height);
+        for (x, y) in (0..64).map(|n| (n % 8, n / 8)).map(|(i, j)| (i * width / 8, j * height / 8)) {
+            let trace = |fragments| shortcut::trace(&plan, shortcuts, 0, (x, y), fragments).unwrap();
+            let (last, all) = (trace(1), trace(u64::MAX));
+            assert_eq!((last.word, last.shown), (all.word, all.shown), "{name}, pixel {x},{y}");
+            left_out += last.left_out;
+        }
+    }
+    assert!(left_out > 64, "{left_out}");
 }
