@@ -1,6 +1,5 @@
 //! The trace of one pixel: the walk of the scalar engine, with a lane that carries the ideal, and a recorder.
 
-use std::convert::Infallible;
 use std::fmt;
 
 use super::context::TriangleContext;
@@ -142,15 +141,7 @@ pub fn trace_last(
     only: Option<usize>,
     fragments: u64,
 ) -> Result<PixelTrace, TraceError> {
-    let tracer = Tracer::new(plan, target, pixel, only, fragments)?;
-    let mut draws = Vec::new();
-    let Ok(end) = tracer.run(|draw| {
-        draws.push(draw);
-        Ok::<(), Infallible>(())
-    });
-    let (cleared, left_out) = (tracer.cleared(), tracer.left_out());
-    let (target, (x, y), TraceEnd { shown, word }) = (tracer.target().name.clone(), pixel, end);
-    Ok(PixelTrace { target, x, y, cleared, shown, word, left_out, draws })
+    Ok(Tracer::new(plan, target, pixel, only, fragments)?.collect::<Pair>(Reals::default()))
 }
 
 /// A prepared trace. The number of fragments is known, and each fragment is passed on as soon as it is shaded.
@@ -267,13 +258,24 @@ impl<'a> Tracer<'a> {
         error.map_or(Ok(end), Err)
     }
 
+    /// Returns the whole trace, drawn as by [`run_with`](Self::run_with).
+    pub(crate) fn collect<L: Lane>(&self, reals: Reals) -> PixelTrace {
+        let mut draws = Vec::new();
+        let TraceEnd { shown, word } = self.run_with::<L>(reals, &mut |draw| {
+            draws.push(draw);
+            true
+        });
+        let (target, (x, y), cleared) = (self.target().name.clone(), self.pixel, self.cleared());
+        PixelTrace { target, x, y, cleared, shown, word, left_out: self.left_out, draws }
+    }
+
     fn run_each(&self, each: &mut dyn FnMut(DrawTrace) -> bool) -> TraceEnd {
         self.run_with::<Pair>(Reals::default(), each)
     }
 
     /// Does the same as [`run`](Self::run) in a lane and with the real numbers of some rules, as long as `each` wants more. `each` is no
     /// type parameter, so that the pipe is compiled in this crate alone.
-    pub(crate) fn run_with<L: Lane>(&self, reals: Reals, each: &mut dyn FnMut(DrawTrace) -> bool) -> TraceEnd {
+    fn run_with<L: Lane>(&self, reals: Reals, each: &mut dyn FnMut(DrawTrace) -> bool) -> TraceEnd {
         let (plan, description) = (self.plan, self.target());
         let mut frames = cleared(plan);
         // Whole frames are needed only if a later draw reads one.

@@ -122,19 +122,10 @@ pub fn trace(
 ) -> Result<PixelTrace, TraceError> {
     let plan = &*changed(plan, shortcuts);
     let tracer = Tracer::new(plan, target, pixel, None, fragments)?;
-    let mut draws = Vec::new();
-    let mut keep = |draw| {
-        draws.push(draw);
-        true
-    };
-    let end = if shortcuts.lead() {
-        tracer.run_with::<Pair<f32>>(shortcuts.reals(), &mut keep)
-    } else {
-        tracer.run_with::<Pair>(shortcuts.reals(), &mut keep)
-    };
-    let (cleared, left_out) = (tracer.cleared(), tracer.left_out());
-    let (target, (x, y)) = (tracer.target().name.clone(), pixel);
-    Ok(PixelTrace { target, x, y, cleared, shown: end.shown, word: end.word, left_out, draws })
+    Ok(match shortcuts.lead() {
+        true => tracer.collect::<Pair<f32>>(shortcuts.reals()),
+        false => tracer.collect::<Pair>(shortcuts.reals()),
+    })
 }
 
 fn draw_all<L: Lane, O: Observer>(
