@@ -441,26 +441,31 @@ fn frames() -> std::result::Result<(), Failed> {
                 .collect();
             parts.into_iter().map(|part| part.join().unwrap()).collect()
         });
-        for (draw, function) in functions.iter().enumerate() {
-            let joined = |of: fn(&Given) -> &Vec<u32>, most: usize| -> Vec<u32> {
-                let mut all: Vec<u32> = parts.iter().flat_map(|part| of(&part[draw])).copied().collect();
-                // Shaders take 64 pixels at a time, so the last one is repeated.
-                while !all.len().is_multiple_of(64 * most) {
-                    all.extend_from_within(all.len() - most..);
-                }
-                all
-            };
-            let (pool, expected) = (joined(|given| &given.pool, COLUMNS), joined(|given| &given.expected, 4));
-            let fragments: usize = parts.iter().map(|part| part[draw].expected.len() / 4).sum();
-            let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
-            let batch =
-                Batch { folder: folder.path(), functions: std::slice::from_ref(function), rows: pool.len() / COLUMNS };
-            batch.write("pool.bin", bytes(&pool));
-            batch.write("expected.bin", bytes(&expected));
-            for language in [Language::Glsl, Language::Wgsl] {
-                batch.shaders(language)?;
-            }
-            println!("{scene}, draw {draw}: {fragments} fragments, all equal in GLSL and WGSL");
+        let draws: Vec<Given> = (0..functions.len())
+            .map(|draw| {
+                let joined =
+                    |of: fn(&Given) -> &Vec<u32>| parts.iter().flat_map(|part| of(&part[draw])).copied().collect();
+                Given { pool: joined(|given| &given.pool), expected: joined(|given| &given.expected) }
+            })
+            .collect();
+        // Every draw has as many pixels as the largest, and shaders take 64 at a time: the last one is repeated.
+        let rows = draws.iter().map(|draw| draw.expected.len() / 4).max().unwrap().next_multiple_of(64);
+        let filled = |words: &[u32], most: usize| -> Vec<u32> {
+            let last = &words[words.len() - most..];
+            words.iter().chain(last.iter().cycle()).copied().take(rows * most).collect()
+        };
+        let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
+        let batch = Batch { folder: folder.path(), functions: &functions, rows };
+        batch.write("pool.bin", draws.iter().flat_map(|draw| bytes(&filled(&draw.pool, COLUMNS))).collect::<Vec<u8>>());
+        batch.write(
+            "expected.bin",
+            draws.iter().flat_map(|draw| bytes(&filled(&draw.expected, 4))).collect::<Vec<u8>>(),
+        );
+        for language in [Language::Glsl, Language::Wgsl] {
+            batch.shaders(language)?;
+        }
+        for (draw, given) in draws.iter().enumerate() {
+            println!("{scene}, draw {draw}: {} fragments, all equal in GLSL and WGSL", given.expected.len() / 4);
         }
     }
     Ok(())

@@ -7,13 +7,16 @@ from wgpu.utils.device import get_default_device
 
 COLUMNS = 64
 count = int(sys.argv[1])
-pool = numpy.fromfile("pool.bin", "<i4").reshape(-1, COLUMNS)
-rows = len(pool)
-expected = numpy.fromfile("expected.bin", "<u4").reshape(count, rows, 4)
+expected = numpy.fromfile("expected.bin", "<u4").reshape(count, -1, 4)
+rows = expected.shape[1]
+# One for all cases, or one for each.
+pools = numpy.fromfile("pool.bin", "<i4").reshape(-1, rows, COLUMNS)
 device = get_default_device()
-given = device.create_buffer_with_data(data=pool.tobytes(), usage=wgpu.BufferUsage.STORAGE)
+given = device.create_buffer_with_data(data=pools[0].tobytes(), usage=wgpu.BufferUsage.STORAGE | wgpu.BufferUsage.COPY_DST)
 result = device.create_buffer(size=rows * 16, usage=wgpu.BufferUsage.STORAGE | wgpu.BufferUsage.COPY_SRC)
 for case in range(count):
+    if len(pools) > 1:
+        device.queue.write_buffer(given, 0, pools[case].tobytes())
     module = device.create_shader_module(code=open(f"{case:05}.wgsl").read())
     entries = [
         {"binding": 0, "visibility": wgpu.ShaderStage.COMPUTE, "buffer": {"type": wgpu.BufferBindingType.read_only_storage}},
