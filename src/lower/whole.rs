@@ -169,8 +169,7 @@ impl<'a> Interpolator<'a> {
 
     /// DEP-1: returns the depth between those of the vertices.
     fn z_depth(&self, edges: [Interpolant<'a>; 3], e: [Number<'a>; 3]) -> Interpolant<'a> {
-        let edges = weights::edge_numbers(edges, None);
-        let shares = weights::shares(edges, Interpolant::sum_of_edges::<true>(edges).reciprocal::<true>());
+        let shares = weights::shares_at::<_, true>(edges, None);
         self.code.by("DEP-1");
         let reference = depth::reference_vertex(e);
         let of =

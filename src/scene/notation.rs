@@ -89,6 +89,30 @@ struct Open {
     behind_colon: bool,
 }
 
+impl Open {
+    /// Returns the bracket that closes one.
+    fn closing(opening: char) -> u8 {
+        match opening {
+            '(' => b')',
+            '[' => b']',
+            _ => b'}',
+        }
+    }
+
+    /// Returns whether its parts have names, or are keys with values.
+    fn takes_names(&self) -> bool {
+        self.close == b'}' || self.named == Some(true)
+    }
+
+    /// Returns whether what precedes a colon may be the name of a part. `callable` says that it is a name.
+    fn takes_colon(&self, callable: bool) -> bool {
+        match self.close {
+            b')' => callable && self.named != Some(false),
+            close => close == b'}',
+        }
+    }
+}
+
 impl<'a> Notation<'a> {
     pub(super) fn new(text: &'a str) -> Self {
         Notation { text, brackets: Vec::new() }
@@ -126,66 +150,49 @@ impl<'a> Notation<'a> {
                     if open.len() >= nesting {
                         return Err(FaultKind::Nesting.at(at..at + 1));
                     }
-                    let close = match next {
-                        '(' => b')',
-                        '[' => b']',
-                        _ => b'}',
-                    };
+                    let close = Open::closing(next);
                     open.push(Open { index: self.brackets.len(), close, named: None, behind_colon: colon });
                     self.brackets.push((at, text.len()));
                     (colon, value, callable) = (false, false, false);
                     at += 1;
                 }
-                ')' | ']' | '}' => {
-                    let Some(inner) = open.last() else {
-                        return Err(if value { FaultKind::Trailing.at(here) } else { character });
-                    };
-                    if u32::from(inner.close) != next.into() {
-                        return Err(FaultKind::Close(inner.close).at(here));
-                    }
-                    if colon && !value {
-                        return Err(character);
-                    }
-                    if value && !colon && (inner.close == b'}' || inner.named == Some(true)) {
-                        return Err(FaultKind::Colon.at(here));
-                    }
-                    self.brackets[inner.index].1 = at;
-                    (colon, value, callable) = (inner.behind_colon, true, false);
-                    open.pop();
-                    at += 1;
-                }
-                ',' => {
+                ')' | ']' | '}' | ',' => {
                     let Some(inner) = open.last_mut() else {
                         return Err(if value { FaultKind::Trailing.at(here) } else { character });
                     };
-                    if !value {
+                    let closes = next != ',';
+                    if closes && u32::from(inner.close) != next.into() {
+                        return Err(FaultKind::Close(inner.close).at(here));
+                    }
+                    if !value && (colon || !closes) {
                         return Err(character);
                     }
-                    if !colon && (inner.close == b'}' || inner.named == Some(true)) {
+                    if value && !colon && inner.takes_names() {
                         return Err(FaultKind::Colon.at(here));
                     }
-                    inner.named = Some(colon);
-                    (colon, value, callable) = (false, false, false);
+                    if closes {
+                        self.brackets[inner.index].1 = at;
+                        (colon, value, callable) = (inner.behind_colon, true, false);
+                        open.pop();
+                    } else {
+                        inner.named = Some(colon);
+                        (colon, value, callable) = (false, false, false);
+                    }
                     at += 1;
                 }
                 ':' => {
-                    let may = open.last().is_some_and(|inner| match inner.close {
-                        b')' => callable && inner.named != Some(false),
-                        close => close == b'}',
-                    });
-                    if !value || colon || !may {
+                    if !value || colon || !open.last().is_some_and(|inner| inner.takes_colon(callable)) {
                         return Err(if value && !open.is_empty() { FaultKind::Comma.at(here) } else { character });
                     }
                     (colon, value, callable) = (true, false, false);
                     at += 1;
                 }
                 _ if value => {
-                    return Err(match open.last() {
-                        None => FaultKind::Trailing,
-                        Some(inner) if !colon && (inner.close == b'}' || inner.named == Some(true)) => FaultKind::Colon,
-                        Some(_) => FaultKind::Comma,
-                    }
-                    .at(here));
+                    let missing = |inner: &Open| match !colon && inner.takes_names() {
+                        true => FaultKind::Colon,
+                        false => FaultKind::Comma,
+                    };
+                    return Err(open.last().map_or(FaultKind::Trailing, missing).at(here));
                 }
                 _ => {
                     callable = next.is_alphabetic() || next == '_';

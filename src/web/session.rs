@@ -70,11 +70,8 @@ impl Session {
     }
 
     fn act(&mut self, request: &Value, file: Vec<u8>) -> Result<Value, Refused> {
-        let text = |field: &str| request[field].as_str().ok_or_else(|| format!("`{field}` is not a text"));
-        let number = |field: &str| {
-            let number = request[field].as_u64().and_then(|n| usize::try_from(n).ok());
-            number.ok_or_else(|| format!("`{field}` is not a number"))
-        };
+        let text = |field| text(request, field);
+        let number = |field| number(request, field);
         match text("do")? {
             "file" => {
                 self.files.files.insert(text("name")?.to_owned(), file);
@@ -90,17 +87,7 @@ impl Session {
                 }
                 Ok(json!({}))
             }
-            "picture" => {
-                let picture = match (number("width"), number("height")) {
-                    (Ok(width), Ok(height)) => raw(&file, width, height)?,
-                    _ => decode(&file, Path::new(text("name")?), &ImageLimits::default())
-                        .map_err(|error| format!("{}: {error}; {}", error.code(), error.help()))?,
-                };
-                let size = json!({ "width": picture.width(), "height": picture.height() });
-                self.picture = picture.pixels().to_vec();
-                self.second = Some(picture);
-                Ok(size)
-            }
+            "picture" => self.receive(request, &file),
             "outline" => Ok(json!({ "tree": tree::value(&self.text) })),
             what @ ("draw" | "depth") => {
                 let target = self.target(number("target")?)?;
@@ -110,26 +97,7 @@ impl Session {
                 self.picture = picture;
                 Ok(answer)
             }
-            "heat" => {
-                let (target, against) = (self.target(number("target")?)?, &request["against"]);
-                self.step(number("until").ok())?;
-                let plan = self.plan_until(number("until").ok())?;
-                if against.as_str() == Some("ideal") && !self.shortcuts.is_empty() {
-                    return Err("float64 is compared with the chip's rules, without shortcuts".to_owned());
-                }
-                let this = || frame::picture(plan, self.shortcuts, target);
-                let (answer, picture) = match against.as_str() {
-                    Some("ideal") => frame::against_ideal(plan, target),
-                    Some("rules") => frame::between(&this(), &frame::picture(plan, Shortcuts::NONE, target), false)?,
-                    Some(_) => frame::against_picture(&this(), self.second.as_ref())?,
-                    None => {
-                        let other = plan.clone().under(policies(against)?);
-                        frame::between(&this(), &frame::picture(&other, self.shortcuts, target), false)?
-                    }
-                };
-                self.picture = picture;
-                Ok(answer)
-            }
+            "heat" => self.compare(request),
             "trace" => {
                 let (target, pixel) = (self.target(number("target")?)?, pixel(request)?);
                 let shortcuts = self.shortcuts;
@@ -163,22 +131,59 @@ impl Session {
                 drawn(scene, number("draw")?)?;
                 Ok(json!({ "text": program::lowered(scene, number("draw")?, self.policies, text("language")?)? }))
             }
-            "edit" => {
-                let (scene, _) = self.loaded()?;
-                let number = number("draw")?;
-                let draw = drawn(scene, number)?;
-                let start =
-                    if draw.program_origin.is_empty() { self.text.clone() } else { self.rewritten(scene, number)? };
-                let changed = program::changed(draw, &request["path"], &request["value"])?;
-                let text = program::replaced(&start, number, "program", &changed)?;
-                Ok(json!({ "text": text, "rewritten": !draw.program_origin.is_empty() }))
-            }
+            "edit" => self.edit(request),
             "paste" => {
                 let written = program::pasted(text("language")?, text("program")?)?;
                 Ok(json!({ "text": program::replaced(&self.text, number("draw")?, "program", &written)? }))
             }
             other => Err(format!("`{other}` is nothing that can be asked for")),
         }
+    }
+
+    /// Decodes a picture to compare with.
+    fn receive(&mut self, request: &Value, file: &[u8]) -> Result<Value, Refused> {
+        let picture = match (number(request, "width"), number(request, "height")) {
+            (Ok(width), Ok(height)) => raw(file, width, height)?,
+            _ => decode(file, Path::new(text(request, "name")?), &ImageLimits::default())
+                .map_err(|error| format!("{}: {error}; {}", error.code(), error.help()))?,
+        };
+        let size = json!({ "width": picture.width(), "height": picture.height() });
+        self.picture = picture.pixels().to_vec();
+        self.second = Some(picture);
+        Ok(size)
+    }
+
+    /// Compares the picture with that of another reading or renderer, with float64, or with the picture that was received.
+    fn compare(&mut self, request: &Value) -> Result<Value, Refused> {
+        let (target, against) = (self.target(number(request, "target")?)?, &request["against"]);
+        self.step(number(request, "until").ok())?;
+        let plan = self.plan_until(number(request, "until").ok())?;
+        if against.as_str() == Some("ideal") && !self.shortcuts.is_empty() {
+            return Err("float64 is compared with the chip's rules, without shortcuts".to_owned());
+        }
+        let this = || frame::picture(plan, self.shortcuts, target);
+        let (answer, picture) = match against.as_str() {
+            Some("ideal") => frame::against_ideal(plan, target),
+            Some("rules") => frame::between(&this(), &frame::picture(plan, Shortcuts::NONE, target), false)?,
+            Some(_) => frame::against_picture(&this(), self.second.as_ref())?,
+            None => {
+                let other = plan.clone().under(policies(against)?);
+                frame::between(&this(), &frame::picture(&other, self.shortcuts, target), false)?
+            }
+        };
+        self.picture = picture;
+        Ok(answer)
+    }
+
+    /// Changes a program in the scene's text.
+    fn edit(&self, request: &Value) -> Result<Value, Refused> {
+        let (scene, _) = self.loaded()?;
+        let number = number(request, "draw")?;
+        let draw = drawn(scene, number)?;
+        let start = if draw.program_origin.is_empty() { self.text.clone() } else { self.rewritten(scene, number)? };
+        let changed = program::changed(draw, &request["path"], &request["value"])?;
+        let text = program::replaced(&start, number, "program", &changed)?;
+        Ok(json!({ "text": text, "rewritten": !draw.program_origin.is_empty() }))
     }
 
     fn loaded(&self) -> Result<&(Scene, Plan), Refused> {
@@ -255,6 +260,15 @@ impl Session {
 }
 
 /// Reads policies from an object that maps rules to values; the others have their defaults.
+fn text<'r>(request: &'r Value, field: &str) -> Result<&'r str, Refused> {
+    request[field].as_str().ok_or_else(|| format!("`{field}` is not a text"))
+}
+
+fn number(request: &Value, field: &str) -> Result<usize, Refused> {
+    let number = request[field].as_u64().and_then(|n| usize::try_from(n).ok());
+    number.ok_or_else(|| format!("`{field}` is not a number"))
+}
+
 fn policies(values: &Value) -> Result<Policies, Refused> {
     let mut policies = Policies::default();
     for (rule, value) in values.as_object().into_iter().flatten() {

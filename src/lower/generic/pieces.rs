@@ -185,7 +185,9 @@ pub(super) fn range(cases: &[Case]) -> Range {
 
 /// Returns all pieces, in the order in which a pixel passes through them.
 pub(super) fn pieces(policies: Policies) -> Vec<Piece> {
-    let mut pieces = combiners(&Maker { policies, block: Block::Piece });
+    let maker = Maker { policies, block: Block::Piece };
+    let mut pieces = general_stages(&maker);
+    pieces.extend(final_stage(&maker));
     pieces.extend(raster(&Maker { policies, block: Block::Raster }));
     pieces
 }
@@ -201,7 +203,7 @@ pub(super) fn mapped(policies: Policies) -> Vec<Vec<i64>> {
     InputMapping::ALL.iter().map(|mapping| (REGISTER.0..=REGISTER.1).map(|x| one(*mapping, x)).collect()).collect()
 }
 
-fn combiners(maker: &Maker) -> Vec<Piece> {
+fn general_stages(maker: &Maker) -> Vec<Piece> {
     let color = maker.case(0, "", |reader| {
         reader.code.by("NUM-5");
         surface::channels(SurfaceFormat::A8R8G8B8, reader.word("word")).map(Word::number).to_vec()
@@ -247,6 +249,25 @@ fn combiners(maker: &Maker) -> Vec<Piece> {
         };
         OPERATIONS.iter().map(case).collect()
     };
+    let about_mux = "Whether muxes take CD: by the least or the most significant bit of SPARE0's alpha.";
+    vec![
+        piece("nb_color", "A constant: R, G, B, A of A8R8G8B8.", "@uint word", vec![color]).filling("channels[4]"),
+        piece("nb_mapped", "An input by its mapping.", "@int x", mapped("x")).by("mapping"),
+        piece("nb_mapped_rgb", "The same of R, G and B.", "", mapped("x[c]")).by("mapping").changing("x[3]", 3),
+        piece("nb_products", "AB or CD of an RGB portion, not yet rounded.", "@in @int a[3], @in @int b[3]", products)
+            .by("is_dot")
+            .filling("sums[3]"),
+        piece("nb_product", "AB or CD of an alpha portion, not yet rounded.", "@int a, @int b", vec![product]),
+        piece("nb_takes_cd", about_mux, "@int spare0_alpha", takes_cd).by("by_most"),
+        piece("nb_third", "The third output of a portion, not yet rounded.", "@int takes_cd, @int ab, @int cd", third)
+            .by("mux"),
+        piece("nb_output", "An output as a register: rounded, biased, scaled, limited.", "@int sum", output("sum"))
+            .by("operation"),
+        piece("nb_output_rgb", "The same of R, G and B.", "", output("sum[c]")).by("operation").changing("sum[3]", 3),
+    ]
+}
+
+fn final_stage(maker: &Maker) -> Vec<Piece> {
     let invert = |x: &'static str| {
         maker.flagged(["as it is", "inverted"], |reader, inverted| {
             vec![final_combiner::input(reader.local(x, (REGISTER.0, FINAL.1)), inverted, &mut reader.listing)]
@@ -272,22 +293,8 @@ fn combiners(maker: &Maker) -> Vec<Piece> {
         }
         vec![final_combiner::evaluate(&state, &registers, &mut reader.listing).fragment[0]]
     });
-    let about_mux = "Whether muxes take CD: by the least or the most significant bit of SPARE0's alpha.";
     let about_rgb = "A channel of the fragment: A B + (1 - A) C + D.";
     vec![
-        piece("nb_color", "A constant: R, G, B, A of A8R8G8B8.", "@uint word", vec![color]).filling("channels[4]"),
-        piece("nb_mapped", "An input by its mapping.", "@int x", mapped("x")).by("mapping"),
-        piece("nb_mapped_rgb", "The same of R, G and B.", "", mapped("x[c]")).by("mapping").changing("x[3]", 3),
-        piece("nb_products", "AB or CD of an RGB portion, not yet rounded.", "@in @int a[3], @in @int b[3]", products)
-            .by("is_dot")
-            .filling("sums[3]"),
-        piece("nb_product", "AB or CD of an alpha portion, not yet rounded.", "@int a, @int b", vec![product]),
-        piece("nb_takes_cd", about_mux, "@int spare0_alpha", takes_cd).by("by_most"),
-        piece("nb_third", "The third output of a portion, not yet rounded.", "@int takes_cd, @int ab, @int cd", third)
-            .by("mux"),
-        piece("nb_output", "An output as a register: rounded, biased, scaled, limited.", "@int sum", output("sum"))
-            .by("operation"),
-        piece("nb_output_rgb", "The same of R, G and B.", "", output("sum[c]")).by("operation").changing("sum[3]", 3),
         piece("nb_final_input", "An input of the final combiner.", "@int x", invert("x")).by("invert"),
         piece("nb_final_input_rgb", "The same of R, G and B.", "", invert("x[c]")).by("invert").changing("x[3]", 3),
         piece("nb_color_sum", "SPARE0 + SECONDARY.", "@int spare0, @int secondary", color_sum).by("clamp_sum"),

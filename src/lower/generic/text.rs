@@ -268,7 +268,6 @@ impl<'g> Printer<'g> {
                 "{indent}nb_operands({x}, r, a);\n{indent}nb_operands({y}, r, b);\n{indent}nb_products({dot}, a, b, {result});\n"
             )
         };
-        let mux = |word| field(word, layout::MUX);
         let any_second = format!("    if (({rgb} & {}u) != 0u) {{\n", cd.put(15) | sum.put(15));
         let read = layout::BYTES[2].put(255) | layout::BYTES[3].put(255);
         let _ = write!(
@@ -277,55 +276,9 @@ impl<'g> Printer<'g> {
              {takes_cd}        for (@int c = 0; c < 3; c++) third[c] = nb_third({}, takes_cd, ab[c], cd[c]);\n    }}\n",
             product(0, "ab", "    "),
             product(1, "cd", "            "),
-            mux(rgb)
+            field(rgb, layout::MUX)
         );
-        let mut open: Option<(usize, bool)> = None;
-        for write in writes() {
-            let (output, channel) = match write {
-                Write::Channel { output, channel } => (output, channel),
-                Write::BlueToAlpha { output } => (output, 2),
-            };
-            let is_alpha = matches!(write, Write::Channel { channel: 3, .. });
-            let word = if is_alpha { alpha } else { rgb };
-            let destination = field(word, layout::OUTPUTS[output]);
-            let (operation, raw) = (field(word, layout::OPERATION), ["ab", "cd", "third"][output]);
-            if open != Some((output, is_alpha)) {
-                out.push_str(if open.is_some() { "    }\n" } else { "" });
-                // The alpha portion is idle in many stages, so that is tested once for all of its outputs.
-                match (open.is_some_and(|(_, alphas)| alphas), is_alpha) {
-                    (false, true) => out.push_str(&any_alpha),
-                    (true, false) => out.push_str("    }\n"),
-                    _ => {}
-                }
-                let _ = writeln!(out, "    if (({destination}) != 0u) {{");
-                // The channels of a dot product are equal.
-                match layout::DOT_PRODUCTS.get(output).filter(|_| !is_alpha) {
-                    Some(dot) => {
-                        let _ = write!(
-                            out,
-                            "        if ({}) {{\n            {raw}[0] = nb_output({operation}, {raw}[0]);\n            {raw}[1] = {raw}[0];\n            {raw}[2] = {raw}[0];\n\
-                             \x20       }} else {{\n            nb_output_rgb({operation}, {raw});\n        }}\n",
-                            is_set(word, *dot)
-                        );
-                    }
-                    None if is_alpha => {}
-                    None => _ = writeln!(out, "        nb_output_rgb({operation}, {raw});"),
-                }
-                open = Some((output, is_alpha));
-            }
-            let value = match (is_alpha, output) {
-                (false, _) => format!("{raw}[{channel}]"),
-                (true, 2) => format!("nb_output({operation}, nb_third({}, takes_cd, alpha_ab, alpha_cd))", mux(alpha)),
-                (true, _) => format!("nb_output({operation}, alpha_{raw})"),
-            };
-            let (guard, to) = match write {
-                Write::Channel { channel, .. } => (String::new(), channel),
-                Write::BlueToAlpha { output } => (format!("if ({}) ", is_set(word, layout::BLUE_TO_ALPHA[output])), 3),
-            };
-            let _ = writeln!(out, "        {guard}r[{destination}][{to}] = {value};");
-        }
-        let closes = if open.is_some_and(|(_, alphas)| alphas) { "    }\n    }\n}\n" } else { "    }\n}\n" };
-        out + closes
+        out + &stage_outputs([rgb, alpha], &any_alpha)
     }
 
     /// Prints the loading of the constants of a stage, or of the final combiner, which is skipped if they have not changed.
@@ -420,6 +373,61 @@ impl<'g> Printer<'g> {
         );
         out
     }
+}
+
+/// Prints how a general stage writes its outputs, and the end of its function. The words of its portions have these names; `any_alpha` begins what only a
+/// portion of alpha needs.
+fn stage_outputs([rgb, alpha]: [&str; 2], any_alpha: &str) -> String {
+    let mut out = String::new();
+    let mut open: Option<(usize, bool)> = None;
+    for write in writes() {
+        let (output, channel) = match write {
+            Write::Channel { output, channel } => (output, channel),
+            Write::BlueToAlpha { output } => (output, 2),
+        };
+        let is_alpha = matches!(write, Write::Channel { channel: 3, .. });
+        let word = if is_alpha { alpha } else { rgb };
+        let destination = field(word, layout::OUTPUTS[output]);
+        let (operation, raw) = (field(word, layout::OPERATION), ["ab", "cd", "third"][output]);
+        if open != Some((output, is_alpha)) {
+            out.push_str(if open.is_some() { "    }\n" } else { "" });
+            // The alpha portion is idle in many stages, so that is tested once for all of its outputs.
+            match (open.is_some_and(|(_, alphas)| alphas), is_alpha) {
+                (false, true) => out.push_str(any_alpha),
+                (true, false) => out.push_str("    }\n"),
+                _ => {}
+            }
+            let _ = writeln!(out, "    if (({destination}) != 0u) {{");
+            // The channels of a dot product are equal.
+            match layout::DOT_PRODUCTS.get(output).filter(|_| !is_alpha) {
+                Some(dot) => {
+                    let _ = write!(
+                        out,
+                        "        if ({}) {{\n            {raw}[0] = nb_output({operation}, {raw}[0]);\n            {raw}[1] = {raw}[0];\n            {raw}[2] = {raw}[0];\n\
+                         \x20       }} else {{\n            nb_output_rgb({operation}, {raw});\n        }}\n",
+                        is_set(word, *dot)
+                    );
+                }
+                None if is_alpha => {}
+                None => _ = writeln!(out, "        nb_output_rgb({operation}, {raw});"),
+            }
+            open = Some((output, is_alpha));
+        }
+        let value = match (is_alpha, output) {
+            (false, _) => format!("{raw}[{channel}]"),
+            (true, 2) => {
+                format!("nb_output({operation}, nb_third({}, takes_cd, alpha_ab, alpha_cd))", field(alpha, layout::MUX))
+            }
+            (true, _) => format!("nb_output({operation}, alpha_{raw})"),
+        };
+        let (guard, to) = match write {
+            Write::Channel { channel, .. } => (String::new(), channel),
+            Write::BlueToAlpha { output } => (format!("if ({}) ", is_set(word, layout::BLUE_TO_ALPHA[output])), 3),
+        };
+        let _ = writeln!(out, "        {guard}r[{destination}][{to}] = {value};");
+    }
+    let closes = if open.is_some_and(|(_, alphas)| alphas) { "    }\n    }\n}\n" } else { "    }\n}\n" };
+    out + closes
 }
 
 /// Prints the functions that read inputs.

@@ -6,7 +6,7 @@
 use super::binary::Binary;
 use super::setup::{Triangle, signed_ratios};
 use super::stroke::Figure;
-use super::weights::{Linear, Number, Weights, difference, edge_numbers, outer_weights_by, shares};
+use super::weights::{Linear, Number, Weights, difference, outer_weights_by, shares_at};
 use crate::number::Integer;
 use crate::number::convert::{align, depth as fraction, split};
 use crate::state::{DepthFormat, DepthRange, DepthTest, PolygonOffset, VertexDepths};
@@ -187,9 +187,8 @@ pub(crate) fn weights(e: [i64; 3]) -> Weights<Binary> {
 pub fn interpolate(e: [i64; 3], z: [f32; 3]) -> Binary {
     let reference = largest_edge(e);
     let choice = reference_vertex(e);
-    let edges = edge_numbers(e.map(Binary::from_edge), None);
     // Smooth edges reach outside of the triangle (SMO-2).
-    let shares = shares(edges, Binary::sum_of_edges::<false>(edges).reciprocal::<false>());
+    let shares = shares_at::<_, false>(e.map(Binary::from_edge), None);
     sum_of_terms(shares, Binary::new(z[reference]), differences(z, reference), choice)
 }
 
@@ -201,8 +200,7 @@ fn interpolate_w(e: [i64; 3], w: [f32; 3]) -> Binary {
 /// DEP-6: returns w_1 + b_0 (w_0 - w_1) + b_2 (w_2 - w_1) with perspective weights, each term cut as in DEP-1. The dominant weight is what `cut_rest` makes
 /// of the others.
 pub fn w_depth<N: Number>(e: [N; 3], ratios: [N; 3], w: Linear<N>, cut_rest: impl FnOnce(N, N) -> N) -> N {
-    let edges = edge_numbers(e, Some(ratios));
-    w_of_shares::<N, false>(shares(edges, N::sum_of_edges::<false>(edges).reciprocal::<false>()), w, cut_rest)
+    w_of_shares::<N, false>(shares_at::<N, false>(e, Some(ratios)), w, cut_rest)
 }
 
 /// DEP-6: returns the same of the shares of the vertices. `COVERED` says that none is negative.

@@ -111,6 +111,13 @@ pub fn shares<N: Number>(edges: [N; 3], reciprocal: N) -> [N; 3] {
     edges.map(|edge| edge.product::<29>(reciprocal))
 }
 
+/// WGT-1: returns the same of edge functions.
+#[inline(always)]
+pub fn shares_at<N: Number, const COVERED: bool>(e: [N; 3], ratios: Option<[N; 3]>) -> [N; 3] {
+    let edges = edge_numbers(e, ratios);
+    shares(edges, N::sum_of_edges::<COVERED>(edges).reciprocal::<COVERED>())
+}
+
 /// WGT-1: returns whether the first and whether the third weight dominates. The second does if neither does. Among weights of the same exponent
 /// the first precedes the second, the second the third and the third the first; of three, the third dominates.
 #[inline(always)]
