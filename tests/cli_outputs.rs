@@ -39,6 +39,22 @@ fn files(folder: &Path) -> Vec<String> {
 }
 
 #[test]
+fn several_files_do_not_go_to_standard_output() {
+    let bench = bench();
+    for arguments in [
+        "lower --generic --to c99 -o -",
+        "gallery a.ron -o -",
+        "vectors export --unit product -o -",
+        "vectors sweep --unit product -o -",
+    ] {
+        bench
+            .run(arguments)
+            .failed(7, "error[NB0702]: `-` cannot be written: several files do not go to standard output");
+        assert_eq!(files(&bench.path("")), ["a.ron", "stone.png"], "{arguments}");
+    }
+}
+
+#[test]
 fn no_output_takes_the_place_of_an_input() {
     let bench = bench();
     bench.write("other.png", picture([1, 2, 3, 4])).write("in.tsv", "tex0.r\n1\n");

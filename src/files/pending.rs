@@ -57,11 +57,22 @@ impl Drop for Pending {
 /// Makes a folder, including the folders around it.
 ///
 /// # Errors
-/// The folder cannot be made.
+/// The folder cannot be made, or is called `-`.
 pub fn make_folder(path: &Path) -> Result<(), OutputError> {
+    refuse_stdout(path)?;
     faults::check(Operation::Write)
         .and_then(|()| std::fs::create_dir_all(path))
         .map_err(|source| OutputError::Write { path: path.to_path_buf(), source })
+}
+
+/// Refuses `-` where a folder is meant: several files do not go to standard output.
+fn refuse_stdout(folder: &Path) -> Result<(), OutputError> {
+    if folder.as_os_str() != "-" {
+        return Ok(());
+    }
+    let source =
+        io::Error::new(io::ErrorKind::InvalidInput, "several files do not go to standard output; name a folder");
+    Err(OutputError::Write { path: folder.to_path_buf(), source })
 }
 
 /// A folder under construction. Like a [`PendingFile`], it appears at its path as a whole or not at all.
@@ -78,8 +89,9 @@ impl PendingFolder {
     /// Begins a folder at `place`, which must not exist. The folder around it is made if it does not exist.
     ///
     /// # Errors
-    /// The folder around it cannot be made or written.
+    /// The folder around it cannot be made or written, or it is called `-`.
     pub fn create(place: &Path) -> Result<PendingFolder, OutputError> {
+        refuse_stdout(place)?;
         make_folder(files::folder_around(place))?;
         PendingFolder::begin(place.to_path_buf(), false)
     }

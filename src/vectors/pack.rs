@@ -187,6 +187,7 @@ pub fn export(folder: &Path, options: &Options) -> Result<Manifest, VectorError>
 
 /// Writes the files of a pack into a folder, its manifest last.
 fn write(folder: &Path, options: &Options) -> Result<Manifest, VectorError> {
+    make_folder(folder)?;
     for part in FOLDERS {
         make_folder(&folder.join(part))?;
     }

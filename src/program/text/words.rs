@@ -15,8 +15,21 @@ pub(super) const MAPPINGS: &[(&str, InputMapping, Option<InputMapping>)] = &[
 ];
 
 /// Returns the names of the registers, in the order of [`FinalRegister`].
-pub(super) fn registers() -> impl Iterator<Item = &'static str> {
+pub fn registers() -> impl Iterator<Item = &'static str> {
     REGISTERS.split(' ')
+}
+
+/// Takes the mapping off an operand: `-expand(tex0.a)` is `tex0.a` by [`InputMapping::ExpandNegate`]. `None` if no mapping is written.
+#[must_use]
+pub fn take_mapping(operand: &str) -> Option<(InputMapping, &str)> {
+    let (is_negative, rest) =
+        operand.trim().strip_prefix('-').map_or((false, operand.trim()), |rest| (true, rest.trim()));
+    let Some((name, source)) = rest.strip_suffix(')').and_then(|call| call.split_once('(')) else {
+        return is_negative.then_some((InputMapping::SignedNegate, rest));
+    };
+    let (_, mapping, negated) = MAPPINGS.iter().find(|(known, ..)| *known == name.trim())?;
+    let mapping = if is_negative { (*negated)? } else { *mapping };
+    Some((mapping, source.trim()))
 }
 
 pub(super) fn find(name: &str) -> Option<FinalRegister> {

@@ -15,13 +15,13 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     inputs: FourInputs<FinalRegister>,
     /// Input E
-    #[arg(long, value_name = "INPUT", value_parser = words::input::<FinalRegister>)]
+    #[arg(long, value_name = "INPUT", allow_hyphen_values = true, value_parser = words::input::<FinalRegister>)]
     e: Option<Input<FinalRegister>>,
     /// Input F
-    #[arg(long, value_name = "INPUT", value_parser = words::input::<FinalRegister>)]
+    #[arg(long, value_name = "INPUT", allow_hyphen_values = true, value_parser = words::input::<FinalRegister>)]
     f: Option<Input<FinalRegister>>,
     /// Input G: alpha; left out, alpha is not computed
-    #[arg(long, value_name = "INPUT", value_parser = words::input::<FinalRegister>)]
+    #[arg(long, value_name = "INPUT", allow_hyphen_values = true, value_parser = words::input::<FinalRegister>)]
     g: Option<Input<FinalRegister>>,
     /// spare0 + secondary may pass 1.0; otherwise it is limited
     #[arg(long)]

@@ -25,16 +25,16 @@ pub(super) fn assignment(text: &str) -> Result<Assignment, String> {
 #[derive(Debug, Args)]
 pub(super) struct FourInputs<R: Named + Send + Sync> {
     /// Input A [default: zero]
-    #[arg(long, value_name = "INPUT", value_parser = words::input::<R>)]
+    #[arg(long, value_name = "INPUT", allow_hyphen_values = true, value_parser = words::input::<R>)]
     a: Option<Input<R>>,
     /// Input B
-    #[arg(long, value_name = "INPUT", value_parser = words::input::<R>)]
+    #[arg(long, value_name = "INPUT", allow_hyphen_values = true, value_parser = words::input::<R>)]
     b: Option<Input<R>>,
     /// Input C
-    #[arg(long, value_name = "INPUT", value_parser = words::input::<R>)]
+    #[arg(long, value_name = "INPUT", allow_hyphen_values = true, value_parser = words::input::<R>)]
     pub(super) c: Option<Input<R>>,
     /// Input D
-    #[arg(long, value_name = "INPUT", value_parser = words::input::<R>)]
+    #[arg(long, value_name = "INPUT", allow_hyphen_values = true, value_parser = words::input::<R>)]
     pub(super) d: Option<Input<R>>,
 }
 

@@ -32,11 +32,12 @@ use words::Input;
 pub(crate) enum Command {
     /// One general combiner stage on given register contents
     ///
-    /// An input is written REGISTER[.COMPONENT][:MAPPING], for example tex0:expand, tex0.a or zero:invert.
+    /// An input is written REGISTER[.COMPONENT][:MAPPING], for example tex0:expand, tex0.a or zero:invert, or
+    /// with a mapping of the combiner language: -expand(col0.a). Without a mapping it is unsigned.
     ///
     /// Registers: tex0 to tex3, primary, secondary, spare0, spare1, const0, const1, fog, zero. Components: rgb, a; b in the alpha portion.
     /// Mappings: identity, invert, expand, expand_negate, half_bias, half_bias_negate, signed, negate. The names of
-    /// NV_register_combiners are known, too.
+    /// NV_register_combiners and of the combiner language are known, too.
     ///
     /// Without --ab, --cd and --sum, AB goes to spare0; with C or D the sum (or the mux) does; with a dot product, AB goes to spare0 and CD
     /// to spare1.

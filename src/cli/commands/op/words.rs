@@ -1,6 +1,7 @@
 //! Words of the command line: names of the state's enumerations, of the vendor's extensions, and short ones.
 
 use ninebit::state::*;
+use ninebit_program::text::words;
 
 /// Returns a word without decoration: `GL_SPARE0_NV`, `Spare0` and `spare0` are the same.
 fn plain(word: &str) -> String {
@@ -42,11 +43,8 @@ fn snake(name: &str) -> String {
     word
 }
 
-const REGISTERS: &[(&str, &str)] = &[
-    ("tex0", "Texture0"),
-    ("tex1", "Texture1"),
-    ("tex2", "Texture2"),
-    ("tex3", "Texture3"),
+/// Short names of registers, beside those of the combiner language.
+const REGISTERS: [(&str, &str); 9] = [
     ("primary", "PrimaryColor"),
     ("secondary", "SecondaryColor"),
     ("const0", "ConstantColor0"),
@@ -70,7 +68,14 @@ const MAPPINGS: &[(&str, &str)] = &[
 
 /// Reads a register of the general stages.
 pub(super) fn register(word: &str) -> Result<Register, String> {
-    named("register", word, REGISTERS)
+    any_register(word)
+}
+
+/// Reads a register of the general stages or of the final combiner.
+fn any_register<R: Named>(word: &str) -> Result<R, String> {
+    let names = words::registers().zip(FinalRegister::NAMES.iter().copied());
+    let short: Vec<(&str, &str)> = REGISTERS.into_iter().chain(names).collect();
+    named("register", word, &short)
 }
 
 /// Reads the destination of a result. ZERO discards it.
@@ -87,7 +92,7 @@ pub(super) fn channel(word: &str) -> Option<usize> {
     [["r", "red"], ["g", "green"], ["b", "blue"], ["a", "alpha"]].iter().position(|names| names.contains(&word))
 }
 
-/// An input as it is written: `REGISTER[.COMPONENT][:MAPPING]`.
+/// An input as it is written: `REGISTER[.COMPONENT][:MAPPING]`, or with a mapping as in the combiner language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Input<R> {
     pub(super) register: R,
@@ -113,9 +118,10 @@ impl From<Input<FinalRegister>> for FinalInput {
 
 /// Reads an input of a general stage or of the final combiner.
 pub(super) fn input<R: Named>(text: &str) -> Result<Input<R>, String> {
-    let (place, mapping) = match text.split_once(':') {
-        Some((place, mapping)) => (place, Some(named("mapping", mapping, MAPPINGS)?)),
-        None => (text, None),
+    let (place, mapping) = match (words::take_mapping(text), text.split_once(':')) {
+        (Some((mapping, place)), _) => (place, Some(mapping)),
+        (None, Some((place, mapping))) => (place, Some(named("mapping", mapping, MAPPINGS)?)),
+        (None, None) => (text, None),
     };
     let (name, component) = match place.split_once('.') {
         Some((name, component)) => {
@@ -124,7 +130,7 @@ pub(super) fn input<R: Named>(text: &str) -> Result<Input<R>, String> {
         }
         None => (place, None),
     };
-    Ok(Input { register: named("register", name, REGISTERS)?, component, mapping })
+    Ok(Input { register: any_register(name)?, component, mapping })
 }
 
 /// Reads an output scale.
@@ -228,6 +234,18 @@ mod tests {
             expected(Register::PrimaryColor, Component::Blue, InputMapping::HalfBiasNegate)
         );
         assert_eq!(state("fog:SIGNED_NEGATE_NV"), expected(Register::Fog, Component::Rgb, InputMapping::SignedNegate));
+        // As in the combiner language.
+        for (text, register, component, mapping) in [
+            ("expand(tex0)", Register::Texture0, Component::Rgb, InputMapping::ExpandNormal),
+            ("-half_bias( col0.a )", Register::PrimaryColor, Component::Alpha, InputMapping::HalfBiasNegate),
+            ("- col1", Register::SecondaryColor, Component::Rgb, InputMapping::SignedNegate),
+            ("unsigned_invert(zero)", Register::Zero, Component::Rgb, InputMapping::UnsignedInvert),
+        ] {
+            assert_eq!(state(text), expected(register, component, mapping), "{text}");
+        }
+        for wrong in ["-unsigned(tex0)", "sine(tex0)", "expand(tex0", "expand(color_sum)", "expand(tex0:signed)"] {
+            assert!(state(wrong).is_err(), "{wrong}");
+        }
         let inverted = input("ef:invert").map(FinalInput::from);
         let register = FinalRegister::ETimesF;
         assert_eq!(inverted, Ok(FinalInput { register, component: Component::Rgb, invert: true }));
