@@ -160,6 +160,15 @@ fn programs_are_printed_in_other_forms() {
     assert_eq!(json["format"], "ninebit-registers-1");
     assert_eq!(json["draws"][0]["words"].as_array().unwrap().len(), 12);
     bench.run("lower lit-combiners.ron").failed(2, "--to");
+    // A file whose name tells nothing.
+    bench.write(
+        "calls.txt",
+        "glCombinerInputNV(GL_COMBINER0_NV, GL_RGB, GL_VARIABLE_A_NV, GL_TEXTURE0_ARB, GL_EXPAND_NORMAL_NV, GL_RGB);\n",
+    );
+    bench
+        .run("lower calls.txt --to combiners")
+        .failed(3, "`--from` reads it as a program: combiners, registers, combiner-calls");
+    assert!(bench.run("lower calls.txt --from combiner-calls --to combiners").text().contains("expand(tex0)"));
     bench.run("lower lit-combiners.ron --to combiners --draw 1").failed(2, "the scene has no draw 1");
     bench.write("lit.rc", "{ rgb { spare0 = texx0; } }");
     bench.run("check lit-text-file.ron").failed(3, "lit.rc:1:18");

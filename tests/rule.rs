@@ -115,6 +115,19 @@ fn unknown_rules_get_what_was_meant() {
     }
 }
 
+#[test]
+fn a_family_is_listed() {
+    let bench = Bench::new();
+    let ids = |text: String| -> Vec<String> {
+        let ids = text.lines().filter_map(|line| line.strip_prefix("  ")?.split(' ').next().map(str::to_owned));
+        ids.collect()
+    };
+    assert_eq!(ids(bench.run("rule fin-").text()), ["FIN-1", "FIN-2", "FIN-3", "FIN-4", "FIN-5"]);
+    assert_eq!(ids(bench.run("rule SMO CMB-8").text()), ["SMO-1", "SMO-2", "CMB-8"]);
+    let json: Value = serde_json::from_str(&bench.run("rule SMO --format json").text()).unwrap();
+    assert_eq!(json["rules"].as_array().unwrap().len(), 2);
+}
+
 /// Beside each rule of a trace stand the letters of its grades, and a line says what they mean.
 #[test]
 fn traces_show_grades() {

@@ -27,7 +27,7 @@ pub const PAGES: [(&str, &str); 9] = pages![
 const MEANINGS: [(&str, &str); 4] = [
     ("SILICON", "read off captures of a real NV2A and confirmed on them pixel by pixel"),
     ("DOCUMENT", "stated by a vendor text, or by a register model that was compared with real hardware"),
-    ("INFERRED", "follows from the two above; no measurement isolates it"),
+    ("INFERRED", "follows from rules of the grades SILICON and DOCUMENT; no measurement isolates it"),
     ("CHOSEN", "nothing decides it; one answer was picked"),
 ];
 

@@ -14,7 +14,7 @@ use ninebit_scene::path::PathError;
 use ninebit_scene::{ProgramLanguage, load_program_with};
 
 use super::scene::{StateArguments, load, refused_beside};
-use super::{Context, Failure};
+use super::{Context, Exit, Failure, Report};
 
 /// Returns the language that a file's extension implies.
 fn language_of(path: &Path) -> Option<ProgramLanguage> {
@@ -86,7 +86,24 @@ impl ProgramArguments {
     pub(crate) fn scene(&self, path: &Path, state: &StateArguments, context: Context) -> Result<Scene, Failure> {
         match self.language(path) {
             Some(language) => Ok(self.read(path, language, context)?.0),
-            None => Ok(load(path, state, context)?.0),
+            None => match load(path, state, context) {
+                Ok((scene, _)) => Ok(scene),
+                Err(failure) => Err(read_as_scene(path, failure, context)),
+            },
         }
+    }
+}
+
+/// Says of a refused file whose name does not say that it is a scene how it would be read as a program.
+fn read_as_scene(path: &Path, failure: Failure, context: Context) -> Failure {
+    match failure.report {
+        Report::Scene(error)
+            if failure.exit == Exit::Invalid && path.extension().is_none_or(|ending| ending != "ron") =>
+        {
+            let languages: Vec<&str> = ProgramLanguage::ALL.iter().map(|language| language.name()).collect();
+            let note = format!("it was read as a scene; `--from` reads it as a program: {}", languages.join(", "));
+            refused_beside(*error, &note, context)
+        }
+        _ => failure,
     }
 }

@@ -14,7 +14,7 @@ const WIDTH: usize = 100;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// Ids of rules, such as CMB-8; without any, all rules are listed
+    /// Ids of rules, such as CMB-8, or how they begin, such as CMB; without any, all rules are listed
     #[arg(value_name = "ID")]
     ids: Vec<String>,
     /// How to print the result
@@ -26,17 +26,27 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let rules: Vec<&Rule<'_>> = match arguments.ids.as_slice() {
         [] => RULES.iter().collect(),
-        ids => ids.iter().map(|id| find(id).ok_or_else(|| unknown(id))).collect::<Result<_, _>>()?,
+        ids => ids.iter().map(|id| named(id)).collect::<Result<Vec<_>, _>>()?.concat(),
     };
-    let text = || match arguments.ids.is_empty() {
-        true => list(&rules),
-        false => rules.iter().map(|rule| entry(rule)).collect::<Vec<_>>().join("\n"),
+    let text = || match arguments.ids.len() == rules.len() {
+        false => list(&rules),
+        true => rules.iter().map(|rule| entry(rule)).collect::<Vec<_>>().join("\n"),
     };
     let json = || {
         let rules: Vec<Value> = rules.iter().map(|rule| value(rule)).collect();
         format!("{:#}\n", json!({ "format": "ninebit-rules-1", "rules": rules }))
     };
     arguments.format.print(text, json)
+}
+
+/// Returns the rule of an id, or those whose ids begin with it.
+fn named(id: &str) -> Result<Vec<&'static Rule<'static>>, Failure> {
+    if let Some(rule) = find(id) {
+        return Ok(vec![rule]);
+    }
+    let family = format!("{}-", id.trim_end_matches('-').to_uppercase());
+    let rules: Vec<&Rule<'_>> = RULES.iter().filter(|rule| rule.id.starts_with(&family)).collect();
+    if rules.is_empty() { Err(unknown(id)) } else { Ok(rules) }
 }
 
 fn unknown(id: &str) -> Failure {
