@@ -206,6 +206,10 @@ fn wrong_inputs_are_refused() {
         .write("state.txt", "SET_NOTHING 1\n");
     bench.run("import no.log --explain").failed(4, "NB1602");
     bench.run("import empty.log --explain").failed(3, "NB1605");
+    bench
+        .write("blank.log", "")
+        .run("import blank.log -o out")
+        .failed(3, "`blank.log` has no method that is known; it is empty");
     bench.run("import game.log --explain --assume state.txt").failed(3, "NB1601");
     assert!(bench.run("import game.log").text().contains("draws 1; of 1 that were asked for 0 are complete"));
     bench.run("import game.log --frame 7 -o out").failed(2, "no frame 7");

@@ -1,7 +1,7 @@
 //! Describes what the values of a type look like in a scene's text.
 
 use super::raw::{Entries, Few, Raw, ReservedValue, Tuple};
-use super::reader::Name;
+use super::reader::{Name, quoted};
 use ninebit::state::Named;
 
 /// The name of a field or variant, and a function that returns the form of its value.
@@ -48,10 +48,21 @@ pub enum Kind {
     Other,
 }
 
-/// Returns advice for a word that stands in place of a structure: the first of its fields that takes the word.
-pub(super) fn field_of(fields: &[Entry], word: &str) -> Option<String> {
-    let takes = |(_, form): &&Entry| matches!(form(), Form::Value(Kind::Choice(words)) if words.contains(&word));
-    fields.iter().find(takes).map(|(name, _)| format!("write `({name}: {word})`"))
+/// Most fields that advice names.
+const FEW: usize = 12;
+
+/// Returns advice for a value that stands in place of a structure: the first of its fields that takes the word or the list, or all fields if they are few.
+pub(super) fn field_of(fields: &[Entry], value: &str) -> Option<String> {
+    let is_list = value.trim_start_matches(|c: char| c == '(' || c.is_whitespace()).starts_with('[');
+    let takes = |(_, form): &&Entry| match form() {
+        Form::Value(Kind::Choice(words)) => words.contains(&value),
+        Form::List(_) => is_list,
+        _ => false,
+    };
+    let written = if is_list { "[...]" } else { value };
+    let advice = fields.iter().find(takes).map(|(name, _)| format!("write `({name}: {written})`"));
+    let names = || quoted(&fields.iter().map(|(name, _)| *name).collect::<Vec<_>>());
+    advice.or_else(|| (fields.len() <= FEW).then(|| format!("fields here: {}", names())))
 }
 
 /// A type whose values have a known form.

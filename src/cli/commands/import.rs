@@ -239,10 +239,12 @@ fn follow(
     reader.finish(&mut |entry| importer.take(&entry));
     let state = importer.state().clone();
     let summary = importer.finish(Some(&reader));
-    if summary.methods.is_empty() && summary.unknown_lines.0 > 0 {
-        let (line, text) = summary.unknown_lines.1.clone().unwrap_or_default();
-        let message =
-            format!("`{}` has no method that is known; line {line} is `{}`", shown::path(path), shown::name(&text));
+    if summary.methods.is_empty() && (summary.unknown_lines.0 > 0 || summary.fault_count == 0) {
+        let first = match &summary.unknown_lines.1 {
+            Some((line, text)) => format!("line {line} is `{}`", shown::name(text)),
+            None => "it is empty".to_owned(),
+        };
+        let message = format!("`{}` has no method that is known; {first}", shown::path(path));
         return Err(Failure::invalid("NB1605", message, "docs/import.md has an example of each form that is read"));
     }
     Ok((summary, state))
