@@ -189,6 +189,8 @@ fn reports_of_folders() {
     let text = bench.run(&command("--results old --results new --no-causes --without CORR")).text();
     assert!(text.contains("  1 frames: 0 exact"), "{text}");
     bench.run(&command("--results none")).failed(3, "NB0526");
+    fs::create_dir(bench.path("empty")).unwrap();
+    bench.run(&command("--results empty")).failed(3, "`empty` has no picture of a frame that is scored");
     bench.run("score --results new").failed(2, "--captures");
 }
 

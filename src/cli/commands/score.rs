@@ -7,7 +7,7 @@ mod page;
 
 use super::*;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write;
 
 use base64::Engine as _;
@@ -117,6 +117,14 @@ fn scored(
     arguments: &Arguments,
     context: Context,
 ) -> Result<Vec<Run>, Failure> {
+    let asked: HashSet<(&str, &str)> = subjects.iter().map(|one| (one.suite.as_str(), one.name.as_str())).collect();
+    let is_asked = |(suite, name): &(String, String)| asked.contains(&(suite.as_str(), name.as_str()));
+    if let Some(set) = sets.iter().find(|set| !set.files.iter().any(is_asked)) {
+        let message = format!("`{}` has no picture of a frame that is scored", shown::path(&set.folder));
+        let (suite, name) = subjects.first().map(|one| (one.suite.clone(), one.name.clone())).unwrap_or_default();
+        let help = format!("it is looked for as `{}`", shown::path(&Path::new(&suite).join(format!("{name}.png"))));
+        return Err(Failure::invalid("NB0526", message, help));
+    }
     let progress = Progress::new("scoring", context.color);
     let one = |(n, set): (usize, &Pictures)| {
         let explain = n + 1 == sets.len() && !arguments.no_causes;
