@@ -28,7 +28,7 @@ const PREFERENCES = {
 const KEYS = { ArrowLeft: "\uE012", ArrowUp: "\uE013", ArrowRight: "\uE014", ArrowDown: "\uE015" };
 
 export class Firefox extends Browser {
-  static async start(program = "firefox") {
+  static async start(program = process.env.FIREFOX ?? "firefox") {
     const browser = new Firefox();
     const port = await freePort();
     browser.profile = mkdtempSync(join(tmpdir(), "ninebit-firefox-"));

@@ -1,7 +1,7 @@
 //! Tests the page of `ninebit inspect`: in node the embedded module draws and finds the same as the program, and the page works in a
 //! browser. So does the report of `ninebit replay`.
 //!
-//! Tests that need node, Chromium (`CHROMIUM` names it), Firefox or axe-core (`vectors/harness/install`) are *ignored* if these are missing. Forty
+//! Tests that need node, Chromium (`CHROMIUM` names it), Firefox (`FIREFOX`) or axe-core (`vectors/harness/install`) are *ignored* if these are missing. Forty
 //! scenes are drawn; `NINEBIT_WEB_SCENES=0` draws all of them.
 #![allow(clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test fails by panicking")]
 
@@ -34,14 +34,14 @@ fn main() {
     repository::enter();
     let arguments = Arguments::from_args();
     let node = runs("node", "--version");
-    let chromium = std::env::var("CHROMIUM").unwrap_or_else(|_| "chromium".to_owned());
-    let browser = node && runs(&chromium, "--version");
+    let called = |name: &str, program: &str| std::env::var(name).unwrap_or_else(|_| program.to_owned());
+    let browser = node && runs(&called("CHROMIUM", "chromium"), "--version");
+    let firefox = node && runs(&called("FIREFOX", "firefox"), "--version");
     let trials = vec![
         Trial::test("frames_are_the_programs", frames).with_ignored_flag(!node),
         Trial::test("findings_are_the_programs", findings).with_ignored_flag(!node),
         Trial::test("the_page_works_in_chromium", || page("chromium")).with_ignored_flag(!browser),
-        Trial::test("the_page_works_in_firefox", || page("firefox"))
-            .with_ignored_flag(!node || !runs("firefox", "--version")),
+        Trial::test("the_page_works_in_firefox", || page("firefox")).with_ignored_flag(!firefox),
         Trial::test("the_report_works_in_a_browser", report).with_ignored_flag(!browser),
         Trial::test("pages_meet_level_aa", accessible).with_ignored_flag(!browser || !Path::new(AXE).exists()),
         Trial::test("requests_that_make_no_sense_are_refused", refused),
