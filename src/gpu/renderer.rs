@@ -168,7 +168,7 @@ impl<'a> Renderer<'a> {
         let mut builder = Builder { gpu, scene, plan, cleared: &cleared, targets: &targets, layout, pipelines, tiles };
         let options = Options { policies: plan.policies, ..Options::default() };
         for (number, draw) in plan.draws().iter().enumerate() {
-            if let Some(part) = draw.assembly.scalar_part() {
+            if let Some(part) = ninebit_lower::unprinted(draw, text == Text::OfDraw) {
                 return Err(Failure::scalar(number, part));
             }
             works.extend(match text {

@@ -1,7 +1,8 @@
 //! Makes the function of a draw's whole pixel: from its place in a triangle and the memories of textures to the stored words.
 
 use ninebit::number::{Integer, Register as _};
-use ninebit::plan::Plan;
+use ninebit::plan::{Plan, PlannedDraw};
+use ninebit::raster::assemble::ScalarPart;
 use ninebit::state::{CompareFunction, Scene};
 
 use crate::code::{Code, Operand, Test};
@@ -19,13 +20,20 @@ pub(crate) const QUAD: i64 = 4094;
 /// What a unit that is not planned gives: nobody reads it, or the plan knows that all of it is 0.
 const UNPLANNED: [Number<'static>; 4] = [Number::ZERO; 4];
 
+/// Returns what of a draw is not printed. `is_own` says that the text is the draw's own, and that no host rasterises it: then vertices may lie behind the
+/// eye.
+pub fn unprinted(draw: &PlannedDraw, is_own: bool) -> Option<ScalarPart> {
+    draw.assembly.scalar_part().filter(|part| !(is_own && *part == ScalarPart::FarVertices))
+}
+
 impl Function {
     /// Makes the function of a whole pixel of a draw: `number` of a scene, and of its plan.
     pub fn of_pixel(scene: &Scene, plan: &Plan, number: usize, options: &Options) -> Function {
         let (draw, planned) = (&scene.draws[number], &plan.draws()[number]);
         let code = Code::default();
         let builder = Builder { code: &code, options: *options };
-        let interpolator = Interpolator { code: &code, perspective: planned.perspective };
+        let interpolator =
+            Interpolator { code: &code, perspective: planned.perspective, is_far: planned.assembly.is_far };
         let whole = Whole { interpolator, planned };
         let (x, y) = (whole.input(Input::X), whole.input(Input::Y));
         let e = whole.edges(x, y, true);

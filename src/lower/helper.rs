@@ -212,8 +212,8 @@ impl Helper {
 
     /// Returns kinds and ranges of the parameters.
     pub(crate) fn parameters(self) -> &'static [(Kind, Range)] {
-        const EDGE: (Kind, Range) = number(-(1 << 42), 1 << 42);
-        const COVERED: (Kind, Range) = number(0, 1 << 42);
+        const EDGE: (Kind, Range) = number(-(1 << 54), 1 << 54);
+        const COVERED: (Kind, Range) = number(0, 1 << 54);
         const COORDINATE: (Kind, Range) = number(-FAR, FAR);
         const FLOOR: [(Kind, Range); 4] = [BINARY, SIZE, number(0, 16), number(0, 1 << 24)];
         const FAR_FLOOR: [(Kind, Range); 4] = [BINARY, SIZE, number(0, 16), number(0, FARTHEST)];

@@ -28,6 +28,7 @@ mod triangle;
 mod truth;
 mod whole;
 
+pub use draw::unprinted;
 pub use generic::{Generic, Sources, with_all_levels};
 pub use input::{Input, Local, Weight};
 pub use language::{Draw, Language, NamedFunction, Shaders};

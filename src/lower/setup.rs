@@ -55,6 +55,7 @@ impl Setup {
         Setup::of_any(plan.profile, fields, |_| SetupState {
             holds_w: Truth::Known(holds_w),
             perspective: Truth::Known(draw.perspective),
+            is_far: draw.assembly.is_far,
             fixed_fog: Number::Constant(fixed_fog),
         })
     }
@@ -156,6 +157,8 @@ pub(crate) struct SetupState<'a> {
     pub(crate) holds_w: Truth<'a>,
     /// Whether attributes are in perspective.
     pub(crate) perspective: Truth<'a>,
+    /// Whether vertices may lie behind the eye (RAS-8).
+    pub(crate) is_far: bool,
     /// The fog byte of triangles with coordinates that are not finite, or -1.
     pub(crate) fixed_fog: Number<'a>,
 }
@@ -215,10 +218,7 @@ impl<'a> Reader<'a> {
                 let [z, from] = [k, reference].map(|k| self.input(k, attribute));
                 self.difference(z, from)
             }),
-            Field::DepthRatio(k) => {
-                self.code.by("DEP-6");
-                ratios(self.inputs(Attribute::W).map(|w| self.number(w)))[k].operand(self.code)
-            }
+            Field::DepthRatio(k) => self.depth_ratio(k),
             Field::SpriteSize => Operand::Constant(-1),
             Field::Offset | Field::OffsetExponent | Field::Sprite(_) => Operand::Constant(0),
         }
@@ -232,7 +232,44 @@ impl<'a> Reader<'a> {
 
     fn edges(&self) -> EdgeFunctions<Number<'a>> {
         self.code.by("RAS-2");
-        EdgeFunctions::new(self.inputs(Attribute::Position(0)), self.inputs(Attribute::Position(1)))
+        let edges = EdgeFunctions::new(self.inputs(Attribute::Position(0)), self.inputs(Attribute::Position(1)));
+        if !self.state.is_far {
+            return edges;
+        }
+        // With the signs of w in the edges, those of e_k r_k agree with e_1: all weights are the same, since every cut is toward zero.
+        self.code.by("RAS-8");
+        edges.turned(self.inputs(Attribute::W).map(|w| self.is_negative(w)))
+    }
+
+    /// Returns whether a binary32 number is negative, of which bits are given.
+    fn is_negative(&self, bits: Number<'a>) -> Truth<'a> {
+        let sign = Operand::Constant(1 << 31);
+        Truth::new(self.code, Test(CompareFunction::GreaterOrEqual, [bits.operand(), sign]))
+    }
+
+    /// Returns the bits of some w without their signs, which [turn](EdgeFunctions::turned) the edges.
+    fn magnitudes(&self, w: [Number<'a>; 3]) -> [Interpolant<'a>; 3] {
+        w.map(|w| {
+            let bits = match self.state.is_far {
+                true => {
+                    Number::new(self.code, self.code.make(Operation::And(w.operand(), Operand::Constant(0x7fff_ffff))))
+                }
+                false => w,
+            };
+            self.number(bits)
+        })
+    }
+
+    /// DEP-6, RAS-8: returns a ratio of w for a w buffer, and the sign of w for a z buffer.
+    fn depth_ratio(&self, k: usize) -> Operand {
+        let w = self.inputs(Attribute::W);
+        if self.state.is_far && matches!(self.state.holds_w, Truth::Known(false)) {
+            self.code.by("RAS-8");
+            let sign = |n: i64| Interpolant::Known(Binary { mantissa: n, exponent: 0 });
+            return ninebit::raster::weights::Number::or(sign(-1), self.is_negative(w[k]), sign(1)).operand(self.code);
+        }
+        self.code.by("DEP-6");
+        ratios(self.magnitudes(w))[k].operand(self.code)
     }
 
     /// WGT-1, INT-6: returns a ratio of w, which is 1 where all w are one.
@@ -249,7 +286,7 @@ impl<'a> Reader<'a> {
             Truth::new(self.code, Test(CompareFunction::Equal, [a.operand(), b.operand()]))
         };
         let is_flat = equal(w[0], w[1]) & equal(w[1], w[2]);
-        let ratios = ratios(w.map(|w| self.number(w)));
+        let ratios = ratios(self.magnitudes(w));
         let one = Interpolant::Known(Binary::ONE);
         ninebit::raster::weights::Number::or(one, is_flat | !self.state.perspective, ratios[k]).operand(self.code)
     }

@@ -60,7 +60,7 @@ pub enum Field {
     Depth(usize),
     /// The difference of a vertex's depth from that of another: that one, the vertex.
     DepthDifference(usize, usize),
-    /// Ratio of w of a vertex for a w buffer.
+    /// Ratio of w of a vertex for a w buffer. For a z buffer 1, or -1 of a vertex behind the eye.
     DepthRatio(usize),
     /// Column or row of a point in 1/16 pixel: axis.
     Sprite(usize),
@@ -142,8 +142,8 @@ impl Field {
 
     pub(crate) fn range(self) -> Range {
         match self {
-            Field::EdgeX(_) | Field::EdgeY(_) => (-(1 << 22), 1 << 22),
-            Field::Edge(_) => (-(1 << 40), 1 << 40),
+            Field::EdgeX(_) | Field::EdgeY(_) => (-(1 << 29), 1 << 29),
+            Field::Edge(_) => (-(1 << 52), 1 << 52),
             Field::Owns(_) => (0, 1),
             Field::Color(..) => (0, 255),
             Field::Sprite(_) => (-(1 << 16), 1 << 16),
@@ -193,7 +193,7 @@ impl Attribute {
 
     pub(crate) fn range(self) -> Range {
         match self {
-            Attribute::Position(_) => (-(1 << 16), 1 << 16),
+            Attribute::Position(_) => (-(1 << 24), 1 << 24),
             Attribute::Color(..) => (0, 255),
             _ => (0, u32::MAX.into()),
         }

@@ -36,6 +36,8 @@ pub(crate) struct Interpolator<'a> {
     pub(crate) code: &'a Code,
     /// Whether w of the vertices count.
     pub(crate) perspective: bool,
+    /// Whether vertices may lie behind the eye (RAS-8).
+    pub(crate) is_far: bool,
 }
 
 /// What reads the rules of one draw.
@@ -84,9 +86,9 @@ impl<'a> Interpolator<'a> {
             let e = edge_function(of, x, y);
             if covered {
                 self.code.name(e.operand(), || format!("E{k}"));
-                return e.within(0, 1 << 40);
+                return e.within(0, 1 << 53);
             }
-            e.within(-(1 << 41), 1 << 41)
+            e.within(-(1 << 53), 1 << 53)
         })
     }
 
@@ -168,8 +170,13 @@ impl<'a> Interpolator<'a> {
     }
 
     /// DEP-1: returns the depth between those of the vertices.
-    fn z_depth(&self, edges: [Interpolant<'a>; 3], e: [Number<'a>; 3]) -> Interpolant<'a> {
-        let shares = weights::shares_at::<_, true>(edges, None);
+    fn z_depth(&self, e: [Number<'a>; 3]) -> Interpolant<'a> {
+        let e = if self.is_far { self.unturned(e) } else { e };
+        let edges = e.map(|e| Interpolant::whole(self.code, e));
+        let shares = match self.is_far {
+            true => weights::shares_at::<_, false>(edges, None),
+            false => weights::shares_at::<_, true>(edges, None),
+        };
         self.code.by("DEP-1");
         let reference = depth::reference_vertex(e);
         let of =
@@ -178,8 +185,18 @@ impl<'a> Interpolator<'a> {
         depth::sum_of_terms(shares, of(&|r| self.binary(Field::Depth(r))), differences, reference)
     }
 
+    /// RAS-8: returns edge functions as they are where no vertex counts as behind the eye.
+    fn unturned(&self, e: [Number<'a>; 3]) -> [Number<'a>; 3] {
+        self.code.by("RAS-8");
+        [0, 1, 2].map(|k: usize| {
+            let sign = self.binary(Field::DepthRatio(k)).parts(self.code, (-1, 1)).mantissa;
+            (Number::ZERO - e[k]).or(sign.is_negative(), e[k])
+        })
+    }
+
     /// DEP-6: returns w between those of the vertices.
-    fn w_depth(&self, edges: [Interpolant<'a>; 3]) -> Interpolant<'a> {
+    fn w_depth(&self, e: [Number<'a>; 3]) -> Interpolant<'a> {
+        let edges = e.map(|e| Interpolant::whole(self.code, e));
         self.code.by("DEP-6");
         let ratios = [self.binary(Field::DepthRatio(0)), Interpolant::ONE, self.binary(Field::DepthRatio(2))];
         let difference = |k: usize| self.binary(Field::DepthDifference(1, k));
@@ -189,8 +206,7 @@ impl<'a> Interpolator<'a> {
 
     /// DEP-1, DEP-6: returns the depth between those of the vertices, or w.
     pub(crate) fn depth_between(&self, w_buffer: bool, e: [Number<'a>; 3]) -> Binary<Number<'a>> {
-        let edges = e.map(|e| Interpolant::whole(self.code, e));
-        let value = if w_buffer { self.w_depth(edges) } else { self.z_depth(edges, e) };
+        let value = if w_buffer { self.w_depth(e) } else { self.z_depth(e) };
         value.parts(self.code, (-(1 << 31) + 1, (1 << 31) - 1))
     }
 

@@ -191,7 +191,7 @@ fn whole(
     let plan = compiled(scene, PlanOptions { policies: options.policies, prune: true })?;
     let mut made = Vec::new();
     for (number, draw) in draws {
-        refuse_scalar(*number, &plan)?;
+        refuse_unprinted(*number, &plan, arguments.output.is_none())?;
         let function = Function::of_pixel(scene, &plan, *number, &options);
         let setup = Setup::new(&plan, &plan.draws()[*number], &function);
         made.push((*number, shown::name(&draw.name), function, setup));
@@ -237,9 +237,9 @@ fn compiled(scene: &Scene, options: PlanOptions) -> Result<Plan, Failure> {
     })
 }
 
-/// Refuses a draw that the scalar engine alone draws.
-fn refuse_scalar(number: usize, plan: &Plan) -> Result<(), Failure> {
-    let Some(part) = plan.draws()[number].assembly.scalar_part() else { return Ok(()) };
+/// Refuses a draw that is [not printed](lower::unprinted).
+fn refuse_unprinted(number: usize, plan: &Plan, is_own: bool) -> Result<(), Failure> {
+    let Some(part) = lower::unprinted(&plan.draws()[number], is_own) else { return Ok(()) };
     let [part, help] = part.words();
     let message = format!("the {part} of draw {number} are not printed");
     Err(Failure::invalid("NB0402", message, format!("{help}, or print its `--fragment`")))
@@ -263,7 +263,7 @@ fn functions(
     // Nothing is pruned: with `--uniform` other constants may be passed.
     let plan = compiled(scene, PlanOptions { policies: options.policies, prune: false })?;
     if !(alone || arguments.fragment) {
-        draws.iter().try_for_each(|(number, _)| refuse_scalar(*number, &plan))?;
+        draws.iter().try_for_each(|(number, _)| refuse_unprinted(*number, &plan, false))?;
     }
     let made = |(number, draw): &(usize, &Draw)| {
         if alone {

@@ -18,6 +18,7 @@ use ninebit::plan::{Plan, PlanOptions};
 use ninebit::random::Random;
 use ninebit::state::{Policies, Scene, TextureImage};
 use ninebit_gpu::{Failure, Gpu, Renderer, Text, adapters, difference};
+use ninebit_lower::unprinted;
 use ninebit_test_support::random_scene;
 use proptest::strategy::{Strategy, ValueTree};
 use setting::{any_policies, runner, setting};
@@ -58,7 +59,7 @@ fn hold(gpu: &Gpu, scene: &Scene, policies: Policies, what: &str) -> Result<(), 
 fn hold_by(gpu: &Gpu, (scene, what): (&Scene, &str), policies: Policies, text: Text) -> Result<(), Failed> {
     let plan = Plan::compile(scene, &PlanOptions { policies, ..PlanOptions::default() }).unwrap();
     let plan = text.plan(scene, &plan).unwrap();
-    if plan.draws().iter().any(|draw| draw.assembly.scalar_part().is_some()) {
+    if plan.draws().iter().any(|draw| unprinted(draw, text == Text::OfDraw).is_some()) {
         let failure = Renderer::new(gpu, scene, &plan, text).map(|_| ()).unwrap_err();
         return if failure.is_unprinted() { Ok(()) } else { Err(failure.text().into()) };
     }

@@ -26,6 +26,7 @@ use ninebit::plan::{Plan, PlanOptions};
 use ninebit::random::Random;
 use ninebit::raster::assemble::ScalarPart;
 use ninebit::state::{Policies, Scene};
+use ninebit_lower::unprinted;
 use ninebit_methods::class::Family;
 use ninebit_program::registers::unit;
 use ninebit_test_support::random_scene;
@@ -92,7 +93,8 @@ impl Way {
 /// Why it is left out.
 fn hold(scene: &Scene, policies: Policies, (way, programs): (Way, &mut Programs), what: &str) -> Result<(), String> {
     let plan = Plan::compile(scene, &PlanOptions { policies, prune: !way.is_generic() }).unwrap();
-    if let Some(part) = plan.draws().iter().find_map(|draw| draw.assembly.scalar_part()) {
+    let is_own = !way.is_generic() && way != Way::Pair;
+    if let Some(part) = plan.draws().iter().find_map(|draw| unprinted(draw, is_own)) {
         return Err(part.words()[0].to_string());
     }
     let printed = Printed::new(scene, &plan);

@@ -53,7 +53,7 @@ pub struct Assembly {
     pub is_far: bool,
 }
 
-/// What the scalar engine alone draws: the lanes of the fast engine and the printed texts do not.
+/// What the scalar engine alone draws: the lanes of the fast engine do not, and not every printed text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ScalarPart {
     /// Smooth edges (SMO-1).

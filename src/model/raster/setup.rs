@@ -77,7 +77,7 @@ impl Triangle {
     pub(crate) fn turn_behind(&mut self, w: [f32; 3]) {
         self.behind = w.map(|w| w < 0.0);
         for k in (0..3).filter(|k| self.behind[*k]) {
-            self.owns[k] = self.a[k] < 0 || (self.a[k] == 0 && self.b[k] < 0);
+            self.owns[k] = owns(-self.a[k], -self.b[k]);
             self.counter_clockwise ^= true;
             (self.rows, self.columns) = (EVERYWHERE, EVERYWHERE);
         }
@@ -190,13 +190,26 @@ impl<T: Integer> EdgeFunctions<T> {
         let sign = one.or(zero.is_below(area), zero) - one.or(area.is_below(zero), zero);
         let edge = |s: usize, t: usize| {
             let (a, b) = ((y[s] - y[t]) * sign, (x[t] - x[s]) * sign);
-            let owns = zero.is_below(a) | (a.is_zero() & zero.is_below(b));
             // RAS-2: from 1/16 pixel to the centre (16 i + 8, 16 j + 8) of pixel (i, j).
-            (sixteen * a, sixteen * b, eight * (a + b) - (a * x[s] + b * y[s]), owns)
+            (sixteen * a, sixteen * b, eight * (a + b) - (a * x[s] + b * y[s]), owns(a, b))
         };
         let [(a0, b0, c0, owns0), (a1, b1, c1, owns1), (a2, b2, c2, owns2)] = [edge(1, 2), edge(2, 0), edge(0, 1)];
         EdgeFunctions { a: [a0, a1, a2], b: [b0, b1, b2], c: [c0, c1, c2], owns: [owns0, owns1, owns2], area }
     }
+
+    /// RAS-8: returns edge functions that are not negative inside, where these vertices lie behind the eye.
+    pub fn turned(self, behind: [T::Choice; 3]) -> EdgeFunctions<T> {
+        let turn = |of: [T; 3]| [0, 1, 2].map(|k: usize| (T::new(0) - of[k]).or(behind[k], of[k]));
+        let (a, b, c) = (turn(self.a), turn(self.b), turn(self.c));
+        EdgeFunctions { a, b, c, owns: [0, 1, 2].map(|k: usize| owns(a[k], b[k])), area: self.area }
+    }
+}
+
+/// RAS-3: returns whether a sample exactly on an edge of these slopes belongs to the triangle.
+#[inline(always)]
+fn owns<T: Integer>(a: T, b: T) -> T::Choice {
+    let zero = T::new(0);
+    zero.is_below(a) | (a.is_zero() & zero.is_below(b))
 }
 
 /// RAS-2: returns an edge function, of which slopes and the value at the centre of pixel (0, 0) are given, at pixel (i, j).
@@ -270,6 +283,10 @@ mod tests {
             let triangle = Triangle::new([0, 1, 2].map(position), true, Profile::Nv2a).expect("area");
             let covered = triangle.covers(triangle.edges(i, j));
             assert_eq!(triangle.contains(i, j), covered, "{behind:?} {i} {j}");
+            let at = |axis: usize| corners.map(|corner| snap(corner[axis]));
+            let edges = EdgeFunctions::new(at(0), at(1)).turned(behind);
+            let turned = |k: usize| is_inside(edge_function([edges.a[k], edges.b[k], edges.c[k]], i, j), edges.owns[k]);
+            assert_eq!((0..3).all(turned), covered, "{behind:?} {i} {j}");
             covered
         };
         let sets = [0, 1, 2, 3, 4, 5, 6, 7].map(|n| [n & 1 != 0, n & 2 != 0, n & 4 != 0]);

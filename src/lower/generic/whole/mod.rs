@@ -152,7 +152,7 @@ fn set_ups(generic: &Generic) -> [Setup; 2] {
             let flag =
                 |name| Truth::new(code, given(name, (0, 1)).compared(CompareFunction::NotEqual, Number::Constant(0)));
             let fixed_fog = given("fixed_fog", (-1, 255));
-            SetupState { holds_w: flag("holds_w"), perspective: flag("perspective"), fixed_fog }
+            SetupState { holds_w: flag("holds_w"), perspective: flag("perspective"), is_far: false, fixed_fog }
         })
     })
 }

@@ -29,7 +29,7 @@ const WIDE: Range = (-(1 << 62), 1 << 62);
 
 impl<'a> Reader<'a> {
     pub(super) fn interpolator(&self) -> Interpolator<'a> {
-        Interpolator { code: self.code, perspective: true }
+        Interpolator { code: self.code, perspective: true, is_far: false }
     }
 
     /// Returns a binary number.
