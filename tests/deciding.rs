@@ -104,7 +104,12 @@ fn rows_name_the_answer() {
         let picture = picture(&scene_of(policy), policy.rule, 0);
         let lit = |y: u32| picture.pixels()[(y * 256) as usize..][..256].iter().all(|pixel| *pixel == [255; 4]);
         let dark = |y: u32| picture.pixels()[(y * 256) as usize..][..256].iter().all(|pixel| pixel[..3] == [0; 3]);
-        assert!((0..64).all(lit) && (64..128).all(dark), "{}", policy.rule);
+        assert!(
+            (0..64).all(lit) && (64..128).all(dark),
+            "{}: by the default value the first row of cells is not white, or the second not black: the scene of vectors/scenes/deciding, its README.md and \
+             docs/evidence/hardware.md have to follow",
+            policy.rule
+        );
     }
 }
 

@@ -89,7 +89,9 @@ fn run(
         result
     };
     match runner(cases).run(&(scenes, policies), compared) {
-        Err(TestError::Fail(reason, (scene, policies))) => panic!("{reason}\n{policies:?}\n{scene:?}"),
+        Err(TestError::Fail(reason, (scene, policies))) => {
+            panic!("{reason}\n{policies:?}\n{scene:?}\ntests/oracle has the rules again, from their pages")
+        }
         other => other.unwrap(),
     }
     let tally = tally.into_inner();

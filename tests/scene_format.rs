@@ -10,7 +10,8 @@ use ninebit::engine::{self, RenderOptions};
 use ninebit::limits::{self, Limits};
 use ninebit::state::{
     AddressMode, Blend, BlendEquation, BlendFactor, Component, Cull, DepthBuffer, DepthFormat, Filter, FinalRegister,
-    InputMapping, Positions, Profile, Register, SurfaceFormat, TextureFormat, TextureImage, Topology, VertexColor,
+    InputMapping, Named, Positions, Profile, Register, SurfaceFormat, TextureFormat, TextureImage, Topology,
+    VertexColor,
 };
 use ninebit_scene::{self as scene, LoadedScene, VertexSpans, fields};
 
@@ -266,8 +267,16 @@ fn the_document_names_every_limit_field_and_word() {
         "(version: 1, profile: Nv2a, truth: (normal: x))",
     ];
     let all: BTreeSet<String> = places.iter().flat_map(|place| known_words(place)).collect();
+    let is_letter = |c: char| c.is_alphanumeric() || c == '_';
+    let words_of = |page: &str| page.split(|c: char| !is_letter(c)).map(str::to_lowercase).collect::<BTreeSet<_>>();
+    let described = words_of(&document);
     for word in &all {
-        assert!(document.contains(word), "docs/scene-format.md says nothing of `{word}`");
+        let is_described = described.contains(&word.to_lowercase()) || !word.chars().all(is_letter);
+        assert!(is_described && document.contains(word), "docs/scene-format.md says nothing of `{word}`");
+    }
+    let rules = words_of(&fs::read_to_string(at("docs/rules/texture.md")).unwrap());
+    for format in TextureFormat::NAMES {
+        assert!(rules.contains(&format.to_lowercase()), "TEX-1 says nothing of {format}: docs/rules/texture.md");
     }
     // Rows that are written by hand describe only words that exist.
     for held in document.split("<!-- held by tests/scene_format.rs: begin -->\n").skip(1) {

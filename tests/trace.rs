@@ -36,7 +36,7 @@ fn stored_words_follow_from_the_trace_alone() {
                 let mut word = None;
                 for draw in document["draws"].as_array().unwrap() {
                     let known = recompute::fragment(draw, &document["policies"])
-                        .unwrap_or_else(|e| panic!("{e}\n{}", trace_text(&plan, &trace)));
+                        .unwrap_or_else(|e| panic!("{e}: tests/common/recompute.rs\n{}", trace_text(&plan, &trace)));
                     if draw["stored"].as_bool().unwrap() {
                         word = Some(known["stored.word"].value);
                     }

@@ -235,7 +235,7 @@ fn random_traces(page: &Page) -> Seen {
                 let document = trace(&plan, target, (random(size.0), random(size.1)));
                 for draw in document["draws"].as_array().unwrap() {
                     let known = recompute::fragment(draw, &document["policies"])
-                        .unwrap_or_else(|error| panic!("{error}\n{draw:#}"));
+                        .unwrap_or_else(|error| panic!("{error}: tests/common/recompute.rs\n{draw:#}"));
                     assert_eq!(draw["stored"].as_bool(), Some(known.contains_key("stored.word")));
                 }
                 seen.document(page, &document);

@@ -249,7 +249,7 @@ fn committed_trees_of_parts_are_what_the_model_says() {
         assert_eq!(tree.text(), std::fs::read_to_string(&path).unwrap());
         assert_eq!(path.parent().unwrap().file_name().unwrap().to_str().unwrap(), tree.header.unit);
         if sweep.size() <= 1 << 16 {
-            assert_eq!(sweep.leaf(0), tree.leaf[0], "{}", path.display());
+            assert_eq!(sweep.leaf(0), tree.leaf[0], "vectors/distributed/renew {}", path.display());
         } else if QUICK.contains(&tree.header.unit.as_str()) {
             large.entry(tree.header.unit.clone()).or_default().push((tree, sweep));
         }
@@ -328,7 +328,12 @@ fn committed_trees_are_what_the_model_says() {
         let chosen: Vec<u64> = if sweep.size() <= 1 << 23 { (0..sweep.leaves()).collect() } else { vec![drawn] };
         let nv10 = Exhaustive::new(sweep.unit(), Profile::Nv10).unwrap();
         chosen.into_par_iter().for_each(|leaf| {
-            assert_eq!(sweep.leaf(leaf), tree.leaf[leaf as usize], "{} leaf {leaf}", tree.header.unit);
+            assert_eq!(
+                sweep.leaf(leaf),
+                tree.leaf[leaf as usize],
+                "leaf {leaf}: vectors/distributed/renew {}",
+                path.display()
+            );
             if sweep.size() <= 1 << 23 {
                 assert_eq!(nv10.leaf(leaf), tree.leaf[leaf as usize], "{} leaf {leaf} of nv10", tree.header.unit);
             }

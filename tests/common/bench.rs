@@ -40,7 +40,7 @@ impl Bench {
     }
 
     pub fn run(&self, arguments: &str) -> Run {
-        Run::from_output(self.command(arguments).output().unwrap())
+        Run { arguments: arguments.to_owned(), ..Run::from_output(self.command(arguments).output().unwrap()) }
     }
 
     /// Runs the program with a closed pipe for its output, and checks that it ends without an error.
@@ -55,6 +55,8 @@ impl Bench {
 /// Exit status and output of a run.
 #[derive(Debug)]
 pub struct Run {
+    /// For messages.
+    pub arguments: String,
     pub status: i32,
     pub stdout: Vec<u8>,
     pub stderr: String,
@@ -63,6 +65,7 @@ pub struct Run {
 impl Run {
     pub fn from_output(output: Output) -> Self {
         Run {
+            arguments: String::new(),
             status: output.status.code().unwrap(),
             stdout: output.stdout,
             stderr: String::from_utf8(output.stderr).unwrap(),
@@ -71,7 +74,8 @@ impl Run {
 
     /// Returns stdout, after checking that the run succeeded and that stderr is empty.
     pub fn data(self) -> Vec<u8> {
-        assert_eq!((self.status, self.stderr.as_str()), (0, ""));
+        let shown = String::from_utf8_lossy(&self.stdout);
+        assert_eq!((self.status, self.stderr.as_str()), (0, ""), "ninebit {}\n{shown}", self.arguments);
         self.stdout
     }
 
@@ -81,7 +85,7 @@ impl Run {
 
     /// Checks that the run failed with the given status, that stderr contains the message without colours, and that stdout is empty.
     pub fn failed(self, status: i32, message: &str) {
-        assert_eq!(self.status, status, "{}", self.stderr);
+        assert_eq!(self.status, status, "ninebit {}\n{}", self.arguments, self.stderr);
         assert!(self.stderr.contains(message), "`{message}` is not in: {}", self.stderr);
         assert!(!self.stderr.contains('\x1b'), "colour without a terminal: {:?}", self.stderr);
         assert_eq!(self.stdout, b"", "diagnostics belong to stderr");
