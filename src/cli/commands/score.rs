@@ -119,7 +119,8 @@ fn scored(
 ) -> Result<Vec<Run>, Failure> {
     let asked: HashSet<(&str, &str)> = subjects.iter().map(|one| (one.suite.as_str(), one.name.as_str())).collect();
     let is_asked = |(suite, name): &(String, String)| asked.contains(&(suite.as_str(), name.as_str()));
-    if let Some(set) = sets.iter().find(|set| !set.files.iter().any(is_asked)) {
+    // Of several runs an early one may lack them.
+    if let Some(set) = sets.last().filter(|_| !sets.iter().flat_map(|set| &set.files).any(is_asked)) {
         let message = format!("`{}` has no picture of a frame that is scored", shown::path(&set.folder));
         let (suite, name) = subjects.first().map(|one| (one.suite.clone(), one.name.clone())).unwrap_or_default();
         let help = format!("it is looked for as `{}`", shown::path(&Path::new(&suite).join(format!("{name}.png"))));

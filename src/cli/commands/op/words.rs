@@ -43,7 +43,7 @@ fn snake(name: &str) -> String {
     word
 }
 
-/// Short names of registers, beside those of the combiner language.
+/// Short names of registers, before those of the combiner language: of several names of a register messages have the first.
 const REGISTERS: [(&str, &str); 9] = [
     ("primary", "PrimaryColor"),
     ("secondary", "SecondaryColor"),
